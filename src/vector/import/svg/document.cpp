@@ -22,6 +22,8 @@ struct Inflater {
   Inflater& operator=(const Inflater&) = delete;
 };
 
+} // namespace
+
 void appendUtf8(std::string& out, uint32_t c) {
   const auto put = [&out](uint32_t v) { out.push_back(static_cast<char>(v)); };
   if (c < 0x80) {
@@ -41,6 +43,7 @@ void appendUtf8(std::string& out, uint32_t c) {
   }
 }
 
+namespace {
 std::string fromUtf16(std::string_view bytes, bool bigEndian) {
   std::string out;
   const auto unit = [&](size_t i) {

@@ -72,6 +72,7 @@ bool parsePaint(std::string_view text, Paint& paint) {
 bool parseOpacity(std::string_view text, double& value) {
   Scanner s(text);
   double v = 0;
+  if (isMath(text)) return evaluate(text, {1, 1}, LengthAxis::X, v) && (value = std::clamp(v, 0.0, 1.0), true);
   if (!s.number(v)) return false;
   if (s.take("%")) v /= 100;
   if (!s.done()) return false;
@@ -174,7 +175,8 @@ bool setStrokeWidth(const Context& c) {
 bool setMiterLimit(const Context& c) {
   double v = 0;
   Scanner s(c.value);
-  return s.number(v) && s.done() && v >= 1 && (c.style.miterLimit = v, true);
+  const bool isNumber = isMath(c.value) ? evaluate(c.value, {}, LengthAxis::X, v) : s.number(v) && s.done();
+  return isNumber && v >= 1 && (c.style.miterLimit = v, true);
 }
 bool setColor(const Context& c) {
   if (isCurrentColor(c.value)) return c.style.color = c.parent.color, true;
@@ -197,9 +199,12 @@ bool setPaintOrder(const Context& c) {
     if (!isNormal && (!oneOf(part, parts) || std::find(order.begin(), order.end(), part) != order.end())) return false;
     if (!isNormal) order.push_back(part);
   }
-  const auto at = [&order](std::string_view part) { return std::find(order.begin(), order.end(), part); };
-  c.style.strokeFirst = at("stroke") < at("fill");
-  return !lower.empty();
+  if (lower.empty()) return false;
+  for (const std::string_view part : parts)
+    if (std::find(order.begin(), order.end(), part) == order.end()) order.push_back(part);
+  for (size_t i = 0; i < order.size(); ++i)
+    c.style.paintOrder[i] = static_cast<Style::Part>(std::find(parts, std::end(parts), order[i]) - parts);
+  return true;
 }
 /// Words of CSS Display and those of CSS 2 for text and tables.
 bool setDisplay(const Context& c) {
@@ -294,10 +299,14 @@ bool setBackground(const Context& c) {
   }
   return !c.value.empty() && (c.style.background = background, true);
 }
-bool setMarker(const Context& c, bool& marker) { return marker = !isWord(c.value, "none"), !c.value.empty(); }
+bool setMarker(const Context& c, std::string& marker) {
+  const bool isNone = isWord(c.value, "none");
+  if (!isNone && !isWord(c.value.substr(0, 4), "url(")) return false;
+  return marker = isNone ? std::string_view() : c.value, true;
+}
 bool setMarkers(const Context& c) {
-  std::array<bool, 3>& all = c.style.markers;
-  return setMarker(c, all[0]) && (all = {all[0], all[0], all[0]}, true);
+  std::string all;
+  return setMarker(c, all) && (c.style.markers.fill(all), true);
 }
 bool setRefers(const Context& c, bool& flag) { return flag = !isWord(c.value, "none") && !c.value.empty(), true; }
 
@@ -332,7 +341,7 @@ const Property kProperties[] = {
     GPGP_PROPERTY("overflow", overflowVisible, setOverflow(c)),
     GPGP_PROPERTY("font-size", fontSize, parseFontSize(c.value, c.parent, c.lengths, c.style.fontSize)),
     GPGP_PROPERTY("font", fontSize, parseFont(c.value, c.parent, c.lengths, c.style.fontSize)),
-    GPGP_PROPERTY("paint-order", strokeFirst, setPaintOrder(c)),
+    GPGP_PROPERTY("paint-order", paintOrder, setPaintOrder(c)),
     GPGP_PROPERTY("vector-effect", nonScalingStroke, setVectorEffect(c)),
     GPGP_PROPERTY("background", background, setBackground(c)),
     GPGP_PROPERTY("background-color", background.color, setBackgroundColor(c)),

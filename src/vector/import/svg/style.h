@@ -2,6 +2,7 @@
 #pragma once
 #include "vector/geometry/stroke.h"
 #include "vector/import/svg/scanner.h"
+#include "vector/import/svg/values.h"
 
 #include <array>
 #include <string>
@@ -36,9 +37,12 @@ struct Style {
   Join join = Join::Miter;
   std::vector<double> dashes;
   Color color;
-  bool visible = true, strokeFirst = false, mixesLinear = false; ///< the last: of its gradient's stops
+  bool visible = true, mixesLinear = false; ///< the last: of its gradient's stops
   double fontSize = 16;
-  std::array<bool, 3> markers{}; ///< at the start, in the middle, at the end
+  enum class Part { Fill, Stroke, Markers };
+  std::array<Part, 3> paintOrder{Part::Fill, Part::Stroke, Part::Markers};
+  std::array<std::string, 3> markers; ///< at the start, in the middle, at the end: what they say, unless none
+  std::shared_ptr<const CustomProperties> variables;
   // not inherited
   double opacity = 1;
   bool displayed = true, nonScalingStroke = false, overflowVisible = false;
