@@ -1,10 +1,10 @@
 // SVG to filled paths.
 //
 // Supported: path, rect, circle, ellipse, line, polyline, polygon, g, a, svg (nested too), use, symbol, switch;
-// transforms; fill, stroke with joins, caps and dashes (made into fills), opacities, colours, style sheets with simple
-// selectors; linear and radial gradients; clip paths; opacity of groups; embedded images. What is not supported is
-// named with its place while the rest is drawn. Any bytes are safe: depth, copies, points and messages are limited, and
-// a limit that is met is said.
+// transforms; fill, stroke with joins, caps and dashes (made into fills), markers, opacities, colours, style sheets;
+// linear and radial gradients, patterns; clip paths; opacity of groups; embedded images. What is not supported is named
+// with its place while the rest is drawn. Any bytes are safe: depth, copies, points and messages are limited, and a
+// limit that is met is said.
 #pragma once
 #include "core/result.h"
 #include "vector/geometry/shape.h"
