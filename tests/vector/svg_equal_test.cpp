@@ -1,5 +1,5 @@
 // A drawing with a feature of SVG is the same drawing written without it: markers placed by hand, style sheets as
-// attributes, patterns as copies.
+// attributes, patterns as copies, text as outlines.
 #include "svg_import.h"
 
 #include <gtest/gtest.h>
@@ -194,6 +194,115 @@ TEST(SvgEqual, PatternsAreCopies) {
             Texts{"W line 2: overflow 'visible' is not supported: <pattern> is clipped to its tiles"});
   EXPECT_EQ(said("<pattern id='p'><rect/></pattern>" + square),
             Texts{"W line 2: <rect> fill refers to a pattern without extent; it is not painted"});
+}
+
+/// A font whose letters are half an em wide and a square of four tenths each, which stands on the baseline.
+GpgpResult GPGP_CALL shapeSquares(void*, const GpgpSvgText* text, GpgpSvgGlyphFn glyphFn, void* glyphData) {
+  static const GpgpPathVerb verbs[] = {GPGP_PATH_MOVE, GPGP_PATH_LINE, GPGP_PATH_LINE, GPGP_PATH_LINE, GPGP_PATH_CLOSE};
+  static const float points[] = {0, 0, 0.4f, 0, 0.4f, -0.4f, 0, -0.4f};
+  GpgpPath square{};
+  square.verbs = verbs, square.verbCount = 5;
+  square.points = points, square.pointCount = 4;
+  float x = 0;
+  for (uint32_t s = 0; s < text->spanCount; ++s)
+    for (uint32_t i = text->spans[s].begin; i < text->spans[s].end; ++i) {
+      GpgpSvgGlyph glyph{};
+      glyph.cluster = i;
+      glyph.x = x;
+      glyph.size = text->spans[s].size;
+      glyph.advance = glyph.size / 2 + text->spans[s].letterSpacing;
+      glyph.paths = &square;
+      glyph.pathCount = text->text[i] != ' ';
+      glyph.ascent = 0.8f, glyph.descent = 0.2f, glyph.xHeight = 0.4f;
+      glyph.underlinePosition = 0.1f, glyph.strikePosition = -0.2f;
+      glyph.underlineThickness = glyph.strikeThickness = 0.1f;
+      x += glyph.advance;
+      glyphFn(glyphData, &glyph);
+    }
+  return GPGP_SUCCESS;
+}
+
+/// A page whose text is in that font.
+Import written(const std::string& inside) {
+  const std::string text =
+      "<svg xmlns='http://www.w3.org/2000/svg' width='100' height='100' font-size='20'>\n" + inside + "</svg>";
+  Import result;
+  const auto listen = [](void* user, const GpgpMessage* m) {
+    static_cast<Import*>(user)->placed.push_back(test::placed(*m));
+  };
+  vector::svg::Reporter reporter(listen, &result, "test.svg");
+  auto drawing = vector::svg::importSvg(std::as_bytes(std::span(text.data(), text.size())), reporter, {}, {}, {},
+                                        nullptr, {shapeSquares, nullptr});
+  if (drawing) result.drawing = std::move(*drawing);
+  return result;
+}
+
+TEST(SvgEqual, TextIsOutlines) {
+  const auto at = [](double x, double y, const std::string& rest = "", double side = 8) {
+    return "<rect x='" + std::to_string(x) + "' y='" + std::to_string(y - side) + "' width='" + std::to_string(side) +
+           "' height='" + std::to_string(side) + "' " + rest + "/>";
+  };
+  const Pair pairs[] = {
+      {"in a row", "<text x='10' y='40'>ab d</text>", at(10, 40) + at(20, 40) + at(40, 40)},
+      {"white space collapses", "<text x='10' y='40'>\n a \n b\n</text>", at(10, 40) + at(30, 40)},
+      {"or is kept", "<text x='10' y='40' xml:space='preserve'> a  b</text>", at(20, 40) + at(50, 40)},
+      {"between elements too", "<text x='10' y='40'><tspan>a</tspan> <tspan>b</tspan></text>", at(10, 40) + at(30, 40)},
+      {"in the middle", "<text x='50' y='40' text-anchor='middle'>abcd</text>",
+       at(30, 40) + at(40, 40) + at(50, 40) + at(60, 40)},
+      {"at the end", "<text x='50' y='40' text-anchor='end'>ab</text>", at(30, 40) + at(40, 40)},
+      {"each at its place", "<text x='10 40' y='40 60'>abc</text>", at(10, 40) + at(40, 60) + at(50, 60)},
+      {"moved", "<text x='10' y='40' dx='5 5' dy='0 10'>abc</text>", at(15, 40) + at(30, 50) + at(40, 50)},
+      {"what is further in counts", "<text x='10 20 30' y='40'>a<tspan x='70'>b</tspan>c</text>",
+       at(10, 40) + at(70, 40) + at(30, 40)},
+      {"turned", "<text x='50' y='50' rotate='90'>a</text>", at(0, 0, "transform='translate(50 50) rotate(90)'")},
+      {"styled in parts",
+       "<text x='10' y='40' fill='#a00'>a<tspan fill='#0a0' font-size='40'>b</tspan><tspan "
+       "style='display:none'>c</tspan>"
+       "d</text>",
+       at(10, 40, "fill='#a00'") + at(20, 40, "fill='#0a0'", 16) + at(40, 40, "fill='#a00'")},
+      {"spacing", "<text x='10' y='40' letter-spacing='5' word-spacing='10'>a b</text>", at(10, 40) + at(50, 40)},
+      {"as long as it says", "<text x='10' y='40' textLength='60'>abc</text>", at(10, 40) + at(35, 40) + at(60, 40)},
+      {"and stretched", "<text x='10' y='40' textLength='40' lengthAdjust='spacingAndGlyphs'>ab</text>",
+       "<path d='M10 32h16v8h-16zM30 32h16v8h-16z'/>"},
+      {"baselines",
+       "<text y='40'><tspan x='10' dominant-baseline='middle'>a</tspan><tspan x='30' "
+       "alignment-baseline='text-before-edge'>b</tspan><tspan x='60' baseline-shift='10'>c</tspan></text>",
+       at(10, 44) + at(30, 56) + at(60, 30)},
+      {"lines",
+       "<text x='10' y='40' text-decoration='underline' fill='#a00'>ab<tspan text-decoration='line-through' "
+       "fill='#00a'>c</tspan></text>",
+       at(10, 40, "fill='#a00'") + at(20, 40, "fill='#a00'") +
+           "<rect x='10' y='41' width='30' height='2' fill='#a00'/>" + at(30, 40, "fill='#00a'") +
+           "<rect x='30' y='35' width='10' height='2' fill='#00a'/>"},
+      {"along a path",
+       "<path id='p' d='M20 10V90' fill='none'/><text><textPath href='#p' startOffset='10'>ab</textPath>"
+       "</text>",
+       at(0, 0, "transform='translate(20 20) rotate(90)'") + at(0, 0, "transform='translate(20 30) rotate(90)'")},
+      {"gradients of the whole text's box",
+       "<linearGradient id='g'><stop stop-color='red'/><stop offset='1' stop-color='blue'/></linearGradient><text "
+       "x='10' "
+       "y='40' fill='url(#g)'>abcd</text>",
+       "<linearGradient id='g' gradientUnits='userSpaceOnUse' x1='10' x2='50'><stop stop-color='red'/><stop offset='1' "
+       "stop-color='blue'/></linearGradient><g fill='url(#g)'>" +
+           at(10, 40) + at(20, 40) + at(30, 40) + at(40, 40) + "</g>"},
+      {"as a clip",
+       "<clipPath id='c'><text x='10' y='40'>ab</text></clipPath><rect width='100' height='100' "
+       "clip-path='url(#c)'/>",
+       at(10, 40) + at(20, 40)},
+  };
+  for (const Pair& pair : pairs) {
+    SCOPED_TRACE(pair.name);
+    const Import given = written(pair.with), reference = page(pair.without);
+    EXPECT_EQ(given.placed, Texts());
+    EXPECT_LE(worst(picture(given), picture(reference)), kSame);
+  }
+  const auto said = [](const std::string& text) { return written(text).placed; };
+  EXPECT_EQ(said("<text><textPath href='#p'>a</textPath></text>"),
+            Texts{"test.svg:2:7: warning: <textPath> refers to '#p', which is no shape of this file; it is not drawn"});
+  EXPECT_EQ(said("<text writing-mode='tb'>a</text>"),
+            Texts{"test.svg:2:1: warning: writing-mode is not supported: <text> is drawn without it"});
+  EXPECT_EQ(said("<text>a<tref href='#a'/></text>"), Texts{"test.svg:2:8: warning: <tref> is not supported"});
+  EXPECT_EQ(said("<text x='1 a'>ab</text>"), Texts{"test.svg:2:10: error: <text> has x '1 a', which is no length"});
 }
 
 TEST(SvgEqual, SelectorsChooseElements) {

@@ -19,7 +19,9 @@ constexpr std::string_view kSilent[] = {
 
 constexpr double kMaxReach = 1e7; // pixels
 
-/// Whether an element's conditions hold (SVG 2, 5.7): no extension is known, and the reader's language is English.
+} // namespace
+
+/// No extension is known, and the reader's language is English.
 bool isFor(pugi::xml_node node) {
   if (!trim(node.attribute("requiredExtensions").value()).empty()) return false;
   const pugi::xml_attribute languages = node.attribute("systemLanguage");
@@ -32,13 +34,12 @@ bool isFor(pugi::xml_node node) {
   return !languages;
 }
 
-} // namespace
-
 core::Result<Imported> importSvg(std::span<const std::byte> bytes, Reporter& reporter, const ImportLimits& limits,
-                                 const ImageDecoder& images, const ImportDetail& detail, const GpgpFileSystem* files) {
+                                 const ImageDecoder& images, const ImportDetail& detail, const GpgpFileSystem* files,
+                                 const TextShaper& text) {
   Document document;
   if (auto ok = document.load(bytes); !ok) return ok.error();
-  return Importer(document, reporter, limits, images, detail, files).run();
+  return Importer(document, reporter, limits, images, detail, files, text).run();
 }
 
 /// "<rect> has x 'wide', which is ".
@@ -166,6 +167,8 @@ void Importer::content(pugi::xml_node node, std::string_view name, State& state,
     visitUse(node, state);
   } else if (name == "image") {
     drawImage(node, state);
+  } else if (name == "text" && text_.fn) {
+    drawText(node, state);
   } else if (name == "switch") {
     visitSwitch(node, state);
   } else {

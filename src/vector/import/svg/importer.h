@@ -34,6 +34,8 @@ struct Box {
   void add(Point p);
 };
 Box boxOf(const Shape& shape);
+/// Whether an element's conditions hold (SVG 2, 5.7).
+bool isFor(pugi::xml_node node);
 /// Zeros where there is none.
 Affine inverseOf(const Affine& m);
 
@@ -45,8 +47,9 @@ inline constexpr std::string_view kGradients[] = {"linearGradient", "radialGradi
 class Importer {
 public:
   Importer(const Document& document, Reporter& reporter, const ImportLimits& limits, const ImageDecoder& images,
-           const ImportDetail& detail, const GpgpFileSystem* files)
-      : document_(document), reporter_(reporter), limits_(limits), images_(images), detail_(detail), files_(files) {}
+           const ImportDetail& detail, const GpgpFileSystem* files, const TextShaper& text)
+      : document_(document), reporter_(reporter), limits_(limits), images_(images), detail_(detail), files_(files),
+        text_(text) {}
   core::Result<Imported> run();
   PageSize pageSize();
 
@@ -151,6 +154,14 @@ private:
   bool stopped(pugi::xml_node node);
   void stop(pugi::xml_node node, const std::string& why);
 
+  // text.cpp
+  struct Text;
+  void drawText(pugi::xml_node node, const State& state);
+  void collectText(pugi::xml_node node, const State& state, bool preserves, Text& text);
+  void placeText(Text& text);
+  void shapeLine(Text& text, size_t first, size_t last);
+  void paintText(Text& text);
+
   // image.cpp
   struct Picture { // that was decoded; width 0: it could not be
     uint32_t index = 0, width = 0, height = 0;
@@ -216,6 +227,7 @@ private:
   uint32_t pictureCount_ = 0;
   StyleSheet sheet_;
   const GpgpFileSystem* files_;
+  const TextShaper text_;
   std::deque<std::string> sheetNames_;  // which places of messages refer to
   std::vector<std::string> openSheets_; // paths, each imported by the one before
   size_t sheetCount_ = 0, sheetBytes_ = 0;

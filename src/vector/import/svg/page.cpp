@@ -9,7 +9,7 @@ core::Result<PageSize> pageSize(std::span<const std::byte> bytes, const GpgpFile
   Document document;
   if (auto ok = document.load(bytes); !ok) return ok.error();
   Reporter quiet(nullptr, nullptr, "");
-  return Importer(document, quiet, {}, {}, {}, files).pageSize();
+  return Importer(document, quiet, {}, {}, {}, files, {}).pageSize();
 }
 
 PageSize Importer::pageSize() {
