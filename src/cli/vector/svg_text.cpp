@@ -106,6 +106,9 @@ void SvgText::shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyph
   const GpgpTextLine& line = made->lines[0];
   float edge = 0; // what the glyphs are measured from: white space may hang out on the left
   for (uint32_t i = 0; i < line.glyphCount; ++i) edge = std::min(edge, made->glyphs[line.firstGlyph + i].x);
+  std::vector<uint32_t> ends{text.size}; // of clusters
+  for (uint32_t i = 0; i < line.glyphCount; ++i) ends.push_back(made->glyphs[line.firstGlyph + i].cluster);
+  std::sort(ends.begin(), ends.end());
   uint32_t previous = UINT32_MAX;
   for (uint32_t i = 0; i < line.glyphCount; ++i) {
     const GpgpTextGlyph& glyph = made->glyphs[line.firstGlyph + i];
@@ -118,10 +121,8 @@ void SvgText::shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyph
     out.y = glyph.y - line.baseline;
     out.size = glyph.size;
     if (glyph.cluster != previous) { // up to the next cluster
-      uint32_t end = text.size;
-      for (uint32_t k = 0; k < line.glyphCount; ++k)
-        if (const uint32_t other = made->glyphs[line.firstGlyph + k].cluster; other > glyph.cluster)
-          end = std::min(end, other);
+      const auto behind = std::upper_bound(ends.begin(), ends.end(), glyph.cluster);
+      const uint32_t end = behind == ends.end() ? text.size : *behind;
       GpgpTextRect rects[8];
       uint32_t count = 8;
       if (layout_.selection(glyph.cluster, end, count, rects) == GPGP_SUCCESS)

@@ -315,8 +315,11 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
   size_t previous = SIZE_MAX;
   std::vector<Point> places;
   for (Text::Glyph& g : taken.glyphs) {
-    size_t i = first;
-    while (i + 1 < last && text.characters[i + 1].offset - from <= g.metrics.cluster) ++i;
+    const auto place =
+        std::upper_bound(text.characters.begin() + static_cast<ptrdiff_t>(first) + 1,
+                         text.characters.begin() + static_cast<ptrdiff_t>(last), g.metrics.cluster + from,
+                         [](size_t offset, const Text::Character& c) { return offset < c.offset; });
+    const size_t i = static_cast<size_t>(place - text.characters.begin()) - 1;
     g.character = i;
     const Text::Character& c = text.characters[i];
     if (i != previous && i != first) shift += c.dx;
@@ -330,7 +333,10 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
   }
   // Of an element that says how long it is, the whole of the line.
   double stretch = 1;
-  for (const Text::Element& e : text.elements) {
+  auto next = std::lower_bound(text.elements.begin(), text.elements.end(), first,
+                               [](const Text::Element& e, size_t at) { return e.first < at; });
+  for (; next != text.elements.end() && next->first < last; ++next) {
+    const Text::Element& e = *next;
     const pugi::xml_attribute said = e.node.attribute("textLength");
     if (!said || e.first < first || e.last > last || e.first == e.last) continue;
     if (e.first != first || e.last != last) {
