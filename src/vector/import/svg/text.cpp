@@ -10,7 +10,7 @@
 namespace gpgp::vector::svg {
 namespace {
 
-constexpr size_t kMaxCharacters = 1'000'000;
+constexpr size_t kMaxCharacters = 100'000, kMaxLine = 20'000;
 
 /// How far glyphs of a font go down for the baseline that is asked for, in em.
 double baselineOffset(std::string_view baseline, const GpgpSvgGlyph& g) {
@@ -130,7 +130,7 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
         const bool isSpace = c == ' ' || c == '\t' || c == '\n' || c == '\r';
         if (isSpace && !keeps && text.afterSpace) continue;
         if ((c & 0xc0) != 0x80) {
-          if (text.characters.size() >= kMaxCharacters) return stop(node, "more than 1000000 characters of text");
+          if (text.characters.size() >= kMaxCharacters) return stop(node, "more than 100000 characters of text");
           Text::Character character;
           character.offset = text.bytes.size();
           character.run = run;
@@ -274,6 +274,9 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
   }
   const Text::Run& run = text.runs[begin.run];
   const TextStyle& style = run.state.style.text;
+  if (last - first > kMaxLine)
+    return reporter_.warn(document_.place(run.node),
+                          element(run.node) + " has a line of more than 20000 characters; not drawn");
   for (const GpgpSvgTextSpan& span : spans)
     if (!(span.size > 0)) return; // nothing is seen
   const GpgpSvgText line{text.bytes.data() + from, static_cast<uint32_t>(to - from), spans.data(),
