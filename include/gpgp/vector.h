@@ -176,6 +176,45 @@ typedef void(GPGP_CALL* GpgpStageFn)(void* userData, const char* stage, const ch
 typedef VkBool32(GPGP_CALL* GpgpSvgImageFn)(void* userData, uint32_t index, const void* data, size_t size,
                                             uint32_t* width, uint32_t* height);
 
+/** A stretch of an SVG's text in one style. */
+typedef struct GpgpSvgTextSpan {
+  uint32_t begin, end;  /**< bytes of the text */
+  const char* families; /**< as font-family lists them, for example "Arial, 'DejaVu Sans', serif"; may be empty */
+  const char* language; /**< BCP 47; may be empty */
+  float size;           /**< units per em, above 0 */
+  float weight;         /**< 1 to 1000; 400 is regular */
+  float letterSpacing;  /**< units after each grapheme */
+  VkBool32 italic, smallCaps;
+} GpgpSvgTextSpan;
+
+/** A line of an SVG's text. Spans cover it without gaps, in order. */
+typedef struct GpgpSvgText {
+  const char* text; /**< UTF-8, not terminated */
+  uint32_t size;    /**< bytes */
+  const GpgpSvgTextSpan* spans;
+  uint32_t spanCount;
+  VkBool32 rightToLeft; /**< the direction of the whole line */
+} GpgpSvgText;
+
+/** A placed glyph of such a line. */
+typedef struct GpgpSvgGlyph {
+  uint32_t cluster;      /**< offset of the first byte that the glyph stands for */
+  float x, y;            /**< origin in units, from where the line begins on the left, +Y down */
+  float advance;         /**< units to where the next cluster begins; 0 for all glyphs of a cluster but the first */
+  float size;            /**< units per em */
+  const GpgpPath* paths; /**< in em, +Y down, as gpgpGetGlyphOutline returns them */
+  uint32_t pathCount;
+  const VkBool32* foreground; /**< one for each path: painted as the SVG says, not in its own colour. NULL: all are. */
+  /** Of the glyph's font, in em, as in GpgpFontInfo. */
+  float ascent, descent, xHeight, underlinePosition, underlineThickness, strikePosition, strikeThickness;
+  VkBool32 incomplete; /**< VK_TRUE: a part of the glyph, such as an image, is not among the paths */
+} GpgpSvgGlyph;
+typedef void(GPGP_CALL* GpgpSvgGlyphFn)(void* glyphUserData, const GpgpSvgGlyph* glyph);
+/** Shapes a line, and calls glyphFn for each of its glyphs from left to right. Anything but SUCCESS leaves the line
+ *  out, which is said. */
+typedef GpgpResult(GPGP_CALL* GpgpSvgTextFn)(void* userData, const GpgpSvgText* text, GpgpSvgGlyphFn glyphFn,
+                                             void* glyphUserData);
+
 typedef struct GpgpSvgSource {
   GpgpStructureType sType;
   const void* pNext;
@@ -204,6 +243,10 @@ typedef struct GpgpSvgSource {
   /** Who draws the drawing; 0: GPGP_DRAWING_FLATTENED. The file holds what is asked for, and nothing else. Elements
    * that patches do not draw are named in warnings (GpgpDrawingCreateInfo::methods). */
   GpgpDrawingMethods methods;
+  /** Optional: shapes text in the engine's fonts, for example with libgpgp_text. NULL: text is reported as
+   *  unsupported. */
+  GpgpSvgTextFn textFn;
+  void* textUserData;
 } GpgpSvgSource;
 #define GPGP_SVG_SOURCE_INIT GPGP_INIT(GpgpSvgSource, GPGP_STRUCTURE_SVG_SOURCE)
 

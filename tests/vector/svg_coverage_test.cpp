@@ -51,6 +51,9 @@ const char* const kBare = "<path d='M10 10H70V60H30V30H90V90H10Z' ";
 const char* const kLine = "<path fill='none' stroke='red' stroke-width='20' d='M20 20H80L20 80' ";
 const char* const kClip = "<clipPath id='c'><path d='M0 0H50V100H0Z'/></clipPath><rect x='20' y='20' width='60' "
                           "height='60' fill='#0a0' ";
+const char* const kMarked =
+    "<marker id='m' markerUnits='userSpaceOnUse' markerWidth='20' markerHeight='20' refX='10' refY='10'><rect "
+    "width='20' height='20' fill='#a00'/></marker><path fill='none' d='M20 20H80V80' ";
 const char* const kStops = "<linearGradient id='g'><stop stop-color='red'/><stop offset='1' ";
 const char* const kPainted = "/></linearGradient><rect width='100' height='100' fill='url(#g)'/>";
 
@@ -127,6 +130,11 @@ const Property kProperties[] = {
     {"cy", "40px", "<circle cx='50' r='30' ", "/>", as("<ellipse cx='50' cy='40' rx='30' ry='30'/>")},
     {"r", "30px", "<circle cx='50' cy='40' ", "/>", as("<ellipse cx='50' cy='40' rx='30' ry='30'/>")},
     {"d", "path(\"M0 0H50V50Z\")", "<path ", "/>", as("<polygon points='0 0 50 0 50 50'/>"), false},
+    {"marker", "url(#m)", kMarked, "/>", as("<path d='M10 10H30V30H10ZM70 10H90V30H70ZM70 70H90V90H70Z' fill='#a00'/>"),
+     false},
+    {"marker-start", "url(#m)", kMarked, "/>", as("<path d='M10 10H30V30H10Z' fill='#a00'/>")},
+    {"marker-mid", "url(#m)", kMarked, "/>", as("<path d='M70 10H90V30H70Z' fill='#a00'/>")},
+    {"marker-end", "url(#m)", kMarked, "/>", as("<path d='M70 70H90V90H70Z' fill='#a00'/>")},
     // Named.
     {"clip", "rect(0 1px 1px 0)", "<svg width='50' height='50' ", "/>", named("clip is not supported")},
     {"filter", "url(#f)", kRect, "/>", named("filter is not supported")},
@@ -135,10 +143,6 @@ const Property kProperties[] = {
     {"mask-image", "url(#m)", kRect, "/>", named("mask-image is not supported"), false},
     {"mask-border", "url(a.png) 30", kRect, "/>", named("mask-border is not supported"), false},
     {"mix-blend-mode", "multiply", kRect, "/>", named("mix-blend-mode is not supported"), false},
-    {"marker", "url(#m)", kRect, "/>", named("marker is not supported"), false},
-    {"marker-start", "url(#m)", kRect, "/>", named("marker is not supported")},
-    {"marker-mid", "url(#m)", kRect, "/>", named("marker is not supported")},
-    {"marker-end", "url(#m)", kRect, "/>", named("marker is not supported")},
     {"shape-rendering", "crispEdges", kRect, "/>", named("shape-rendering is not supported")},
     {"image-rendering", "pixelated", "<g ", "/>", named("image-rendering is not supported")},
     {"transform-box", "fill-box", kRect, "/>", named("transform-box is not supported"), false},
@@ -299,6 +303,14 @@ const Element kElements[] = {
      "fill='#0a0' clip-path='url(#c)'/>",
      as(kReference)},
     {"style", "<style>rect {fill:#0a0}</style><rect x='20' y='20' width='60' height='60'/>", as(kReference)},
+    {"marker",
+     "<marker id='m' markerWidth='60' markerHeight='60'><rect width='60' height='60' fill='#0a0'/></marker><path "
+     "fill='none' d='M20 20H90' marker-start='url(#m)'/>",
+     as(kReference)},
+    {"pattern",
+     "<pattern id='p' width='1' height='1'><rect width='60' height='60' fill='#0a0'/></pattern><rect x='20' y='20' "
+     "width='60' height='60' fill='url(#p)'/>",
+     as(kReference)},
     {"title", "<title>a</title>", as(kEmpty)},
     {"desc", "<desc>a</desc>", as(kEmpty)},
     {"metadata", "<metadata><rect width='9' height='9'/></metadata>", as(kEmpty)},
@@ -314,7 +326,6 @@ const Element kElements[] = {
     {"foreignObject", "<foreignObject width='9' height='9'/>", named("<foreignObject> is not supported")},
     {"foreignObject", "<switch><foreignObject width='9' height='9'/><g/></switch>",
      named("<foreignObject> is not supported: <switch> shows what follows it")},
-    {"pattern", "<pattern id='p'/><rect width='9' height='9' fill='url(#p)'/>", named("a <pattern>, which is not")},
     {"hatch", "<hatch id='p'><hatchpath/></hatch><rect width='9' height='9' fill='url(#p)'/>",
      named("a <hatch>, which")},
     {"hatchpath", "<hatchpath/>", named("<hatchpath> is not supported")},
@@ -326,7 +337,6 @@ const Element kElements[] = {
     {"meshpatch", "<meshpatch/>", named("<meshpatch> is not supported")},
     {"meshrow", "<meshrow/>", named("<meshrow> is not supported")},
     {"mask", "<mask id='m'/><rect width='9' height='9' mask='url(#m)'/>", named("mask is not supported")},
-    {"marker", "<marker id='m'/><path d='M0 0h9v9' marker-end='url(#m)'/>", named("marker is not supported")},
     {"filter", "<filter id='m'/><path d='M0 0h9v9' filter='url(#m)'/>", named("filter is not supported")},
     {"animate", "<defs><animate href='#r'/></defs>", named("<animate> is not supported")},
     {"animateColor", "<rect width='9' height='9'><animateColor/></rect>", named("<animateColor> is not supported")},

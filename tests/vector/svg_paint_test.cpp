@@ -85,7 +85,8 @@ TEST(SvgPaint, ContextPaintsAreTheUses) {
     const Import i = page(text);
     EXPECT_TRUE(i.drawing.paths.empty());
     ASSERT_EQ(i.messages.size(), 1u);
-    EXPECT_EQ(i.messages[0], "W line 2: <rect> fill is context-fill outside of what a <use> shows; it is not painted");
+    EXPECT_EQ(i.messages[0],
+              "W line 2: <rect> fill is context-fill outside of what a <use> or a marker shows; it is not painted");
   }
   EXPECT_EQ(page("<rect width='9' height='9' fill='url(#g) context-fill'/>").messages,
             Texts{"W line 2: <rect> has fill 'url(#g) context-fill', which is not valid; ignored"});

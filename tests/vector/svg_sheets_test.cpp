@@ -139,7 +139,7 @@ TEST(SvgSheets, MediaQueries) {
 }
 
 TEST(SvgSheets, WhatIsNotReadIsNamedWithItsPlace) {
-  const TextFiles files{{"sub/bad.css", "\n  .a:hover {fill:red}\n@media screen {\n @font-face {} }"},
+  const TextFiles files{{"sub/bad.css", "\n  .a::before {fill:red}\n@media screen {\n @font-face {} }"},
                         {"self.css", "@import 'other.css';"},
                         {"other.css", "\n @import 'self.css';"},
                         {"late.css", ".a{fill:red} @import 'self.css';"}};
@@ -172,7 +172,7 @@ TEST(SvgSheets, WhatIsNotReadIsNamedWithItsPlace) {
   };
   for (const auto& c : cases) EXPECT_EQ(sheeted("", c.inside, files).placed, Texts{c.message + after}) << c.inside;
   EXPECT_EQ(sheeted("", "<style>@import 'sub/bad.css';</style>", files).placed,
-            (Texts{"sub/bad.css:2:3: warning: style selector '.a:hover' is not supported",
+            (Texts{"sub/bad.css:2:3: warning: style selector '.a::before' is not supported",
                    "sub/bad.css:4:2: warning: style rule @font-face is not supported"}));
   EXPECT_EQ(sheeted("", "<style>@import 'late.css';</style>", files).placed,
             Texts{"late.css:1:14: warning: style rule @import does not stand before all others; ignored"});

@@ -11,6 +11,9 @@
 #ifdef GPGP_CLI_VECTOR
 #include "cli/vector/svg_files.h"
 #include "cli/vector/svg_messages.h"
+#ifdef GPGP_CLI_TEXT
+#include "cli/vector/svg_text.h"
+#endif
 #endif
 
 #include <gpgp/gpgp.hpp>
@@ -34,6 +37,7 @@ struct BakeOptions {
 #endif
 #ifdef GPGP_CLI_TEXT
   BakeFontOptions font;
+  std::vector<std::string> textFonts; ///< of drawings
 #endif
 };
 
@@ -99,6 +103,10 @@ Baked bakeDrawing(const std::string& text, const std::string& file, const std::s
   messages.attach(source);
   const SvgFiles files(file);
   source.fileSystem = files.fileSystem();
+#ifdef GPGP_CLI_TEXT
+  SvgText fonts(options.textFonts);
+  fonts.attach(source);
+#endif
   Result<Blob> blob = compileSvg(source);
   if (!blob) throw Failure(messages.count() ? messages.failure() : name + ": " + blob.name());
   messages.finish();
@@ -265,6 +273,11 @@ Work addBake(CLI::App& app) {
 #endif
 #ifdef GPGP_CLI_TEXT
   addBakeFontOptions(*command, options->font);
+#ifdef GPGP_CLI_VECTOR
+  command->add_option("--font", options->textFonts, "Font of the text in drawings; may be given several times")
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE");
+#endif
 #endif
   command->footer(R"(
 Examples:

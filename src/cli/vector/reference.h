@@ -160,14 +160,15 @@ inline std::vector<float> vectorReference(std::span<const GpgpPath> paths, std::
     for (uint32_t k = 0; k < groups[g].clipCount; ++k) clips[g].emplace_back(groups[g].clip[k]);
   const size_t rowSamples = size_t(width) * kSamples;
   std::vector<float> pixels(size_t(width) * height * 4);
-  std::vector<WindingPath::Crossing> row;
+  std::vector<WindingPath::Crossing> ofPath, ofClip; // one is read while the other is made
   const auto mixed = [blend](double linear) {
     const float value = static_cast<float>(linear);
     return blend == Blend::Srgb ? host::srgbFromLinear(value) : value;
   };
   const auto number = [t](int i) { return static_cast<double>(t[i]); };
   // Calls with each sample of a row of pixels that a path covers, and where it lies in the drawing.
-  const auto forSamples = [&](const WindingPath& path, uint32_t y, const auto& call) {
+  const auto forSamples = [&](const WindingPath& path, uint32_t y, std::vector<WindingPath::Crossing>& row,
+                              const auto& call) {
     for (size_t line = 0; line < kGrid; ++line) {
       const double dy = (y + (static_cast<double>(line) + 0.5) / kGrid - number(5)) / number(3);
       path.crossings(dy, row);
@@ -197,7 +198,7 @@ inline std::vector<float> vectorReference(std::span<const GpgpPath> paths, std::
       if (mask.empty()) {
         mask.assign(rowSamples, 0);
         for (const WindingPath& path : clips[group - 1])
-          forSamples(path, y, [&](size_t sample, double, double) { mask[sample] = 1; });
+          forSamples(path, y, ofClip, [&](size_t sample, double, double) { mask[sample] = 1; });
       }
       return mask;
     };
@@ -230,7 +231,7 @@ inline std::vector<float> vectorReference(std::span<const GpgpPath> paths, std::
       const float* color = path.path().color;
       const float plain[4] = {mixed(static_cast<double>(color[0])), mixed(static_cast<double>(color[1])),
                               mixed(static_cast<double>(color[2])), color[3]};
-      forSamples(path, y, [&](size_t sample, double dx, double dy) {
+      forSamples(path, y, ofPath, [&](size_t sample, double dx, double dy) {
         for (const uint32_t g : clipping)
           if (!showing(g)[sample]) return;
         if (!entered) enter();

@@ -9,6 +9,9 @@
 #include "cli/vector/reference.h"
 #include "cli/vector/svg_files.h"
 #include "cli/vector/svg_messages.h"
+#ifdef GPGP_CLI_TEXT
+#include "cli/vector/svg_text.h"
+#endif
 #include "host/files.h"
 #include "host/picture.h"
 #include "vector/import/svg/import.h"
@@ -29,6 +32,7 @@ struct VectorOptions {
   Size size;
   double zoom = 1, tilt = 0;
   std::vector<double> center;
+  std::vector<std::string> fonts;
   bool allWarnings = false;
   bool reference = false;
   uint32_t repeat = 1, maxTileEntries = 0;
@@ -105,13 +109,13 @@ float scaleInto(const Size& size, std::span<const char> bytes, GpgpSvgSource sou
 
 /// Decibels between what the device painted (as it lies in the image) and samples composited by winding numbers.
 double compareWithReference(std::span<const char> bytes, std::span<const uint8_t> painted, const float (&transform)[6],
-                            const std::array<float, 4>& background, const Size& size, float scale,
-                            const GpgpFileSystem* files) {
+                            const std::array<float, 4>& background, const Size& size, const GpgpSvgSource& source) {
   gpgp::vector::svg::Reporter quiet(nullptr, nullptr, "");
   gpgp::vector::svg::ImportDetail detail;
-  if (scale > 0) detail.scale = static_cast<double>(scale);
+  if (source.scale > 0) detail.scale = static_cast<double>(source.scale);
   detail.strokes /= 16; // so that what strokes are off by is seen
-  const auto svg = gpgp::vector::svg::importSvg(std::as_bytes(bytes), quiet, {}, {}, detail, files);
+  const auto svg = gpgp::vector::svg::importSvg(std::as_bytes(bytes), quiet, {}, {}, detail, source.fileSystem,
+                                                {source.textFn, source.textUserData});
   if (!svg) throw Failure(svg.error().text);
   const gpgp::vector::svg::ImportedViews views(*svg);
   std::vector<float> pixels(painted.size());
@@ -214,6 +218,10 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   source.report = &converted;
   VectorImages images;
   images.attach(source);
+#ifdef GPGP_CLI_TEXT
+  SvgText fonts(options.fonts);
+  fonts.attach(source);
+#endif
   Stages stages{options.stages, {}};
   if (!options.stages.empty()) {
     source.stageFn = onStage;
@@ -263,8 +271,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
     return outcomeInPass(session, drawing, facts, options,
                          {map, size.width, size.height, 1, background, options.repeat},
                          [&](std::span<const uint8_t> pixels) {
-                           return compareWithReference(bytes, pixels, item.transform, background, size, source.scale,
-                                                       files.fileSystem());
+                           return compareWithReference(bytes, pixels, item.transform, background, size, source);
                          });
 
   GpgpCanvasCreateInfo canvasInfo = GPGP_CANVAS_CREATE_INFO_INIT;
@@ -325,8 +332,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   std::vector<uint8_t> pixels;
   if (!options.out.empty() || options.reference) pixels = host::downloadImage(device, target, VK_IMAGE_LAYOUT_GENERAL);
   double psnr = 0;
-  if (options.reference)
-    psnr = compareWithReference(bytes, pixels, item.transform, background, size, source.scale, files.fileSystem());
+  if (options.reference) psnr = compareWithReference(bytes, pixels, item.transform, background, size, source);
   if (!options.out.empty()) {
     host::writePng(options.out, host::fromPremultiplied(size.width, size.height, pixels));
   }
@@ -402,6 +408,11 @@ Work addVector(CLI::App& app) {
                    "coverage or as many samples as --aa says")
       ->check(CLI::IsMember({"flattened", "in-pass"}))
       ->capture_default_str();
+#ifdef GPGP_CLI_TEXT
+  command->add_option("--font", options->fonts, "Font of the drawing's text; may be given several times")
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE");
+#endif
   command->add_option("--zoom", options->zoom, "Magnify the picture around its middle")
       ->check(CLI::Range(1e-6, 1e6))
       ->capture_default_str();

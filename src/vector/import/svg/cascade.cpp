@@ -6,17 +6,24 @@
 #include <cmath>
 
 namespace gpgp::vector::svg {
+namespace {
+/// The attribute that an element has for the property transform.
+const char* transformAttribute(std::string_view name) {
+  return oneOf(name, kGradients) ? "gradientTransform" : name == "pattern" ? "patternTransform" : "transform";
+}
+} // namespace
 
 void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthContext& outer, Style& style) {
   struct Setting {
     std::string_view name, value;
   };
   std::vector<Setting> settings;
-  const bool isGradient = oneOf(document_.name(node), kGradients), isRoot = node == document_.root();
+  const bool isRoot = node == document_.root();
+  const std::string_view ownTransform = transformAttribute(document_.name(node));
   for (const pugi::xml_attribute a : node.attributes()) {
     std::string_view name = a.name(), value = a.value();
-    if (isGradient && name == "transform") continue; // there the property has an attribute of its own (SVG 2, 8.5)
-    if (isGradient && name == "gradientTransform") {
+    if (name == "transform" && name != ownTransform) continue; // paints have another attribute for it (SVG 2, 8.5)
+    if (name == ownTransform && name != "transform") {
       name = "transform";
       if (trim(value).empty()) value = "none"; // is one, which is no template's
     }
@@ -38,8 +45,7 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
   LengthContext lengths = outer;
   lengths.fontSize = parent.fontSize;
   if (isRoot) lengths.rootFontSize = Style{}.fontSize; // for its own size; not for its other lengths
-  const auto apply = [&](const Setting& s) {
-    if (s.name.empty()) return ignored(node, document_.place(node), "the declaration", s.value);
+  const auto set = [&](const Setting& s) {
     const Applied applied = applyProperty(style, parent, s.name, s.value, lengths);
     if (applied == Applied::Unknown && isGeometry(s.name)) style.geometry.emplace_back(s.name, s.value);
     if (applied == Applied::Unknown &&
@@ -51,6 +57,25 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
                                                 "' is not supported: " + element(node) + " has miters instead");
     if (applied == Applied::Invalid) ignored(node, document_.place(node), s.name, s.value);
   };
+  const auto apply = [&](const Setting& s) {
+    if (s.name.empty()) return ignored(node, document_.place(node), "the declaration", s.value);
+    if (s.name.starts_with("--")) return;
+    if (hasVariables(s.value)) {
+      const std::optional<std::string> value = withoutVariables(s.value, style.variables.get());
+      work_ += s.value.size() / 16 + (value ? value->size() / 16 : 0);
+      if (!value) {
+        reporter_.ignored(document_.place(node),
+                          valueOf(node, s.name, s.value) + "a variable without a value; it is as if it were unset");
+        return (void)applyProperty(style, parent, s.name, "unset", lengths);
+      }
+      return set({s.name, *value});
+    }
+    set(s);
+  };
+  CustomProperties variables;
+  for (const Setting& s : settings)
+    if (s.name.starts_with("--")) variables.insert_or_assign(std::string(s.name), std::string(s.value));
+  if (!variables.empty()) style.variables = cascadeVariables(parent.variables, variables);
   const auto setsSize = [](const Setting& s) { return s.name == "font-size" || s.name == "font"; };
   for (const Setting& s : settings) // lengths in em need it
     if (setsSize(s)) apply(s);
@@ -63,8 +88,7 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
 Affine Importer::transformOf(pugi::xml_node node, const Style& style, const LengthContext& outer) {
   Affine own;
   if (style.transform.empty()) return own;
-  const bool isGradient = oneOf(document_.name(node), kGradients);
-  const char* name = isGradient ? "gradientTransform" : "transform";
+  const char* name = transformAttribute(document_.name(node));
   const pugi::xml_attribute text = node.attribute(name);
   const Place place = text && text.value() == style.transform ? document_.place(text, 0) : document_.place(node);
   LengthContext lengths = outer;
@@ -90,7 +114,7 @@ Box Importer::boxOfContext(const Context& context) {
   if (!context.box) {
     std::vector<pugi::xml_node> inside(used_.begin() + static_cast<ptrdiff_t>(context.used), used_.end());
     used_.resize(context.used); // as the <use> was met
-    context.box = boxAround(context.node, "use", *context.state, context.space);
+    context.box = boxAround(context.node, document_.name(context.node), *context.state, context.space);
     used_.insert(used_.end(), inside.begin(), inside.end());
   }
   return *context.box;
@@ -105,7 +129,7 @@ std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const Surface
     if (!context) {
       reporter_.ignored(document_.place(node), element(node) + " " + property + " is context-" +
                                                    (isFill ? "fill" : "stroke") +
-                                                   " outside of what a <use> shows; it is not painted");
+                                                   " outside of what a <use> or a marker shows; it is not painted");
       return std::nullopt;
     }
     const Style& style = context->state->style;
@@ -122,6 +146,20 @@ std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const Surface
   const std::string_view name = target ? document_.name(target) : std::string_view();
   const std::string who = element(node) + " " + property;
   const std::string instead = paint.hasFallback ? "its fallback is used" : "it is not painted";
+  if (name == "pattern") {
+    const GradientChain& chain = chainOf(target);
+    if (chain.cyclic || std::find(used_.begin(), used_.end(), target) != used_.end()) {
+      reporter_.ignored(document_.place(node), who + " refers to a pattern that contains itself; " + instead);
+      return plain(paint.fallback);
+    }
+    if (!chain.otherFile.empty())
+      reporter_.warn(document_.place(node), who + " refers to a pattern that refers to another file, '" +
+                                                std::string(chain.otherFile.substr(0, 60)) +
+                                                "', which is not supported");
+    if (auto tiling = tilingOf(chain, surface)) return Ink{{0, 0, 0, 1}, nullptr, nullptr, std::move(tiling)};
+    reporter_.ignored(document_.place(node), who + " refers to a pattern without extent; it is not painted");
+    return std::nullopt;
+  }
   if (oneOf(name, kGradients)) {
     const GradientChain& chain = chainOf(target);
     if (chain.cyclic) {

@@ -5,16 +5,13 @@
 #include <cmath>
 
 namespace gpgp::vector::svg {
-namespace {
-/// "#id" of url(#id), with or without quotes; empty where it is something else.
 std::string referenceOf(std::string_view text) {
-  if (!isWord(text.substr(0, 4), "url(") || text.back() != ')') return {};
+  if (text.size() < 5 || !isWord(text.substr(0, 4), "url(") || text.back() != ')') return {};
   text = trim(text.substr(4, text.size() - 5));
   if (text.size() > 1 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front())
     text = text.substr(1, text.size() - 2);
   return std::string(text.substr(0, 1) == "#" ? text : std::string_view());
 }
-} // namespace
 
 Affine inverseOf(const Affine& m) {
   const double area = m.a * m.d - m.b * m.c;
@@ -88,11 +85,14 @@ void Importer::clip(pugi::xml_node node, std::string_view name, State& state) {
     State inner;
     inner.style = styleOf(target, state.lengths);
     value = inner.style.clipPath;
-    inner.transform = space * transformOf(target, inner.style, state.lengths);
+    const bool isByBox = trim(target.attribute("clipPathUnits").value()) == "objectBoundingBox";
+    LengthContext measures = state.lengths; // of its transform
+    if (isByBox) measures.width = measures.height = 1;
+    inner.transform = space * transformOf(target, inner.style, measures);
     inner.style = inner.style.inherited();
     inner.lengths = state.lengths;
     inner.depth = state.depth;
-    if (trim(target.attribute("clipPathUnits").value()) == "objectBoundingBox") {
+    if (isByBox) {
       if (!box) box = boxAround(node, name, state, space);
       if (box->left <= box->right)
         inner.transform =

@@ -26,10 +26,10 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
     return std::chrono::duration<double, std::milli>(to - from).count();
   };
   const auto begin = Clock::now();
-  const auto imported =
-      vector::svg::importSvg({static_cast<const std::byte*>(source.data), source.data ? source.size : 0}, reporter, {},
-                             {source.imageFn, source.imageUserData},
-                             {source.scale > 0 ? static_cast<double>(source.scale) : 1}, source.fileSystem);
+  const auto imported = vector::svg::importSvg(
+      {static_cast<const std::byte*>(source.data), source.data ? source.size : 0}, reporter, {},
+      {source.imageFn, source.imageUserData}, {source.scale > 0 ? static_cast<double>(source.scale) : 1},
+      source.fileSystem, {source.textFn, source.textUserData});
   if (!imported) return fail(imported.error().code, imported.error().text);
   std::pmr::memory_resource* memory = std::pmr::new_delete_resource();
   const vector::svg::ImportedViews views(*imported);

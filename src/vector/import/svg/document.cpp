@@ -22,6 +22,8 @@ struct Inflater {
   Inflater& operator=(const Inflater&) = delete;
 };
 
+} // namespace
+
 void appendUtf8(std::string& out, uint32_t c) {
   const auto put = [&out](uint32_t v) { out.push_back(static_cast<char>(v)); };
   if (c < 0x80) {
@@ -41,6 +43,7 @@ void appendUtf8(std::string& out, uint32_t c) {
   }
 }
 
+namespace {
 std::string fromUtf16(std::string_view bytes, bool bigEndian) {
   std::string out;
   const auto unit = [&](size_t i) {
@@ -186,8 +189,8 @@ core::Result<void> Document::load(std::span<const std::byte> bytes) {
   if (tags > kMaxTags || attributes > kMaxAttributes)
     return makeError(GPGP_ERROR_INVALID_DATA, "more than %zu tags or %zu attributes", kMaxTags, kMaxAttributes);
   findUnknownEntities();
-  const pugi::xml_parse_result parsed =
-      tree_.load_buffer_inplace(text_.data(), text_.size(), pugi::parse_default | pugi::parse_pi, pugi::encoding_utf8);
+  const pugi::xml_parse_result parsed = tree_.load_buffer_inplace(
+      text_.data(), text_.size(), pugi::parse_default | pugi::parse_pi | pugi::parse_ws_pcdata, pugi::encoding_utf8);
   if (parsed.status == pugi::status_out_of_memory) return makeError(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
   if (!parsed) {
     const Place at = placeAt(static_cast<size_t>(std::max<ptrdiff_t>(parsed.offset, 0)));

@@ -18,6 +18,9 @@ namespace gpgp::vector::svg {
 /// that are not zero, more than `maxBytes`.
 core::Result<void> inflateIfNeeded(std::span<const std::byte> bytes, size_t maxBytes, std::string& out);
 
+/// Appends a character by its code point.
+void appendUtf8(std::string& out, uint32_t c);
+
 class Document {
 public:
   static constexpr size_t kMaxBytes = size_t(64) << 20;     ///< of XML

@@ -53,7 +53,9 @@ const Importer::GradientChain& Importer::chainOf(pugi::xml_node gradient) {
     if (!href.empty() && href[0] != '#') return chain.otherFile = href, chain;
     const pugi::xml_node next = document_.find(href);
     if (!next) return noTemplate("not there"), chain;
-    if (!oneOf(document_.name(next), kGradients)) return noTemplate("no gradient but a " + element(next)), chain;
+    const bool isPattern = document_.name(gradient) == "pattern";
+    if (isPattern ? document_.name(next) != "pattern" : !oneOf(document_.name(next), kGradients))
+      return noTemplate((isPattern ? "no pattern but a " : "no gradient but a ") + element(next)), chain;
     chain.cyclic = std::find(chain.gradients.begin(), chain.gradients.end(), next) != chain.gradients.end();
     if (chain.cyclic) return chain;
     if (chain.gradients.size() == kLongest) return noTemplate("one more than 32 after each other"), chain;
@@ -170,8 +172,8 @@ std::shared_ptr<const Gradient> Importer::gradientOf(const GradientChain& chain,
   for (const pugi::xml_node gradient : chain.gradients) { // the property, whose attribute gradientTransform is
     const Style style = styleOf(gradient, state.lengths);
     if (style.transform.empty()) continue;
-    const Affine own = transformOf(gradient, style, state.lengths);
-    if (own.a * own.d == own.b * own.c) return nullptr; // it has no extent
+    const Affine own = transformOf(gradient, style, lengths); // its box is what its units measure by
+    if (own.a * own.d == own.b * own.c) return nullptr;       // it has no extent
     map = map * own;
     break;
   }

@@ -1,10 +1,10 @@
 // SVG to filled paths.
 //
 // Supported: path, rect, circle, ellipse, line, polyline, polygon, g, a, svg (nested too), use, symbol, switch;
-// transforms; fill, stroke with joins, caps and dashes (made into fills), opacities, colours, style sheets with simple
-// selectors; linear and radial gradients; clip paths; opacity of groups; embedded images. What is not supported is
-// named with its place while the rest is drawn. Any bytes are safe: depth, copies, points and messages are limited, and
-// a limit that is met is said.
+// transforms; fill, stroke with joins, caps and dashes (made into fills), markers, opacities, colours, style sheets;
+// linear and radial gradients, patterns; clip paths; opacity of groups; embedded images; text where it is shaped. What
+// is not supported is named with its place while the rest is drawn. Any bytes are safe: depth, copies, points and
+// messages are limited, and a limit that is met is said.
 #pragma once
 #include "core/result.h"
 #include "vector/geometry/shape.h"
@@ -41,6 +41,12 @@ struct Gradient {
 /// Who decodes embedded images.
 struct ImageDecoder {
   GpgpSvgImageFn fn = nullptr;
+  void* userData = nullptr;
+};
+
+/// Who shapes text.
+struct TextShaper {
+  GpgpSvgTextFn fn = nullptr;
   void* userData = nullptr;
 };
 
@@ -117,6 +123,6 @@ core::Result<Affine> fitPage(std::span<const std::byte> bytes, const float (&pag
 /// read through `files`, by names relative to the drawing's folder.
 core::Result<Imported> importSvg(std::span<const std::byte> bytes, Reporter& reporter, const ImportLimits& limits = {},
                                  const ImageDecoder& images = {}, const ImportDetail& detail = {},
-                                 const GpgpFileSystem* files = nullptr);
+                                 const GpgpFileSystem* files = nullptr, const TextShaper& text = {});
 
 } // namespace gpgp::vector::svg

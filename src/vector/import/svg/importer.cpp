@@ -10,6 +10,7 @@ namespace gpgp::vector::svg {
 namespace {
 
 constexpr std::string_view kShapes[] = {"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"};
+constexpr std::string_view kMarked[] = {"path", "line", "polyline", "polygon"}; ///< the shapes that have markers
 /// Drawn only where something refers to them, or never.
 constexpr std::string_view kSilent[] = {
     "defs",           "symbol",    "title",      "desc",          "metadata",     "style",  "stop",  "linearGradient",
@@ -18,7 +19,9 @@ constexpr std::string_view kSilent[] = {
 
 constexpr double kMaxReach = 1e7; // pixels
 
-/// Whether an element's conditions hold (SVG 2, 5.7): no extension is known, and the reader's language is English.
+} // namespace
+
+/// No extension is known, and the reader's language is English.
 bool isFor(pugi::xml_node node) {
   if (!trim(node.attribute("requiredExtensions").value()).empty()) return false;
   const pugi::xml_attribute languages = node.attribute("systemLanguage");
@@ -31,13 +34,12 @@ bool isFor(pugi::xml_node node) {
   return !languages;
 }
 
-} // namespace
-
 core::Result<Imported> importSvg(std::span<const std::byte> bytes, Reporter& reporter, const ImportLimits& limits,
-                                 const ImageDecoder& images, const ImportDetail& detail, const GpgpFileSystem* files) {
+                                 const ImageDecoder& images, const ImportDetail& detail, const GpgpFileSystem* files,
+                                 const TextShaper& text) {
   Document document;
   if (auto ok = document.load(bytes); !ok) return ok.error();
-  return Importer(document, reporter, limits, images, detail, files).run();
+  return Importer(document, reporter, limits, images, detail, files, text).run();
 }
 
 /// "<rect> has x 'wide', which is ".
@@ -116,6 +118,11 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
     return;
   }
   if (mode_ != Mode::Paint) return content(node, name, state, useSize);
+  grouped(node, name, state, [&](State& own) { content(node, name, own, useSize); });
+}
+
+void Importer::grouped(pugi::xml_node node, std::string_view name, State& state,
+                       const std::function<void(State&)>& inside) {
   const double opacity = state.style.opacity;
   if (!(opacity > 0)) return;
   const size_t before = result_.paths.size(), groupsBefore = result_.groups.size();
@@ -129,7 +136,7 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
   } else {
     state.opacity *= opacity;
   }
-  content(node, name, state, useSize);
+  inside(state);
   const size_t drawn = result_.paths.size() - before;
   if (drawn == 0) {
     if (result_.groups.size() > groupsBefore) madeClips_.clear();
@@ -152,7 +159,7 @@ void Importer::content(pugi::xml_node node, std::string_view name, State& state,
   reportUnsupported(node, name, state.style);
   if (oneOf(name, kShapes)) {
     draw(node, name, state);
-  } else if (name == "g" || name == "a") {
+  } else if (name == "g" || name == "a" || name == "marker" || name == "pattern") {
     visitChildren(node, state);
   } else if (name == "svg" || name == "symbol") {
     visitViewport(node, state, useSize);
@@ -160,6 +167,8 @@ void Importer::content(pugi::xml_node node, std::string_view name, State& state,
     visitUse(node, state);
   } else if (name == "image") {
     drawImage(node, state);
+  } else if (name == "text" && text_.fn) {
+    drawText(node, state);
   } else if (name == "switch") {
     visitSwitch(node, state);
   } else {
@@ -228,7 +237,6 @@ bool Importer::hasExtent(pugi::xml_node node, double width, double height, const
 
 /// <svg> inside another, or <symbol>: its own coordinates, and a clip where something reaches beyond its edge.
 void Importer::visitViewport(pugi::xml_node node, State& state, const double* useSize) {
-  const size_t before = result_.paths.size();
   if (node == document_.root()) {
     if (mode_ == Mode::Paint) paintBackground(state);
     return visitChildren(node, state);
@@ -259,6 +267,12 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
     state.lengths.height = box->height;
   }
   if (mode_ != Mode::Paint || state.style.overflowVisible) return visitChildren(node, state);
+  clipped(node, frame, w, h, state, [&] { visitChildren(node, state); });
+}
+
+void Importer::clipped(pugi::xml_node node, const Affine& frame, double w, double h, State& state,
+                       const std::function<void()>& inside) {
+  const size_t before = result_.paths.size();
   Shape edge = rectangle(0, 0, w, h, 0, 0, 1);
   for (Point& p : edge.points) p = frame(p);
   const bool clips = state.clips < shader::kMaxClipDepth &&
@@ -273,7 +287,7 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
     state.group = static_cast<uint32_t>(result_.groups.size());
     ++state.clips;
   }
-  visitChildren(node, state);
+  inside();
   const double slack = 1e-3 * std::max(w, h), area = frame.a * frame.d - frame.b * frame.c;
   for (size_t i = before; i < result_.paths.size(); ++i)
     for (size_t k = 0; k + 1 < result_.paths[i].points.size(); k += 2) {
@@ -299,14 +313,12 @@ void Importer::reportUnsupported(pugi::xml_node node, std::string_view name, con
   const struct {
     bool is;
     const char* what;
-  } features[] = {
-      {mode_ == Mode::Clip && !style.clipPath.empty(), "clip-path inside a clipPath"},
-      {style.mask, "mask"},
-      {style.filter, "filter"},
-      {style.blendMode, "mix-blend-mode"},
-      {style.unsupportedEffect, "vector-effect other than non-scaling-stroke"},
-      {isShape && std::find(style.markers.begin(), style.markers.end(), true) != style.markers.end(), "marker"},
-      {isShape && style.mixesLinear && isFaint, "color-interpolation of what is painted, linearRGB,"}};
+  } features[] = {{mode_ == Mode::Clip && !style.clipPath.empty(), "clip-path inside a clipPath"},
+                  {style.mask, "mask"},
+                  {style.filter, "filter"},
+                  {style.blendMode, "mix-blend-mode"},
+                  {style.unsupportedEffect, "vector-effect other than non-scaling-stroke"},
+                  {isShape && style.mixesLinear && isFaint, "color-interpolation of what is painted, linearRGB,"}};
   for (const auto& f : features)
     if (f.is)
       reporter_.warn(document_.place(node),
@@ -324,7 +336,8 @@ void Importer::draw(pugi::xml_node node, std::string_view name, const State& sta
   reportChildren(node);
   const Style& style = state.style;
   if (!style.visible && mode_ != Mode::Measure) return;
-  const Shape shape = shapeOf(node, name, state);
+  std::vector<size_t> silent;
+  const Shape shape = shapeOf(node, name, state, &silent);
   if (shape.empty()) return;
   if (mode_ == Mode::Measure) return measure(shape, toBox_ * state.transform);
   group_ = state.group;
@@ -338,10 +351,17 @@ void Importer::draw(pugi::xml_node node, std::string_view name, const State& sta
     const std::optional<Ink> ink = resolve(style.fill, surface, node, "fill");
     if (ink) emit(shape, state.transform, style.fillRule, *ink, style.fillOpacity * state.opacity, node);
   };
-  if (!style.strokeFirst) fill();
-  if (style.strokeWidth > 0)
-    if (const std::optional<Ink> ink = resolve(style.stroke, surface, node, "stroke")) stroke(shape, state, *ink, node);
-  if (style.strokeFirst) fill();
+  for (const Style::Part part : style.paintOrder) {
+    group_ = state.group;
+    if (part == Style::Part::Fill) {
+      fill();
+    } else if (part == Style::Part::Stroke) {
+      if (!(style.strokeWidth > 0)) continue;
+      if (const auto ink = resolve(style.stroke, surface, node, "stroke")) stroke(shape, state, *ink, node);
+    } else if (oneOf(name, kMarked)) {
+      drawMarkers(node, shape, silent, state);
+    }
+  }
 }
 
 /// What a dash of length 1 is long: where the element says how long its path is, dashes are in such units.
@@ -409,6 +429,7 @@ void Importer::stroke(const Shape& shape, const State& state, const Ink& ink, pu
 
 void Importer::emit(const Shape& shape, const Affine& transform, GpgpFillRule rule, const Ink& ink, double opacity,
                     pugi::xml_node node) {
+  if (ink.tiling) return emitTiles(shape, transform, rule, *ink.tiling, opacity, node);
   const Color& color = ink.color;
   const double alpha = color.a * opacity;
   if (shape.empty() || !(alpha > 0)) return;

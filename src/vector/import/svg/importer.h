@@ -34,16 +34,22 @@ struct Box {
   void add(Point p);
 };
 Box boxOf(const Shape& shape);
+/// Whether an element's conditions hold (SVG 2, 5.7).
+bool isFor(pugi::xml_node node);
 /// Zeros where there is none.
 Affine inverseOf(const Affine& m);
+
+/// "#id" of url(#id), with or without quotes; empty where it is something else.
+std::string referenceOf(std::string_view text);
 
 inline constexpr std::string_view kGradients[] = {"linearGradient", "radialGradient"};
 
 class Importer {
 public:
   Importer(const Document& document, Reporter& reporter, const ImportLimits& limits, const ImageDecoder& images,
-           const ImportDetail& detail, const GpgpFileSystem* files)
-      : document_(document), reporter_(reporter), limits_(limits), images_(images), detail_(detail), files_(files) {}
+           const ImportDetail& detail, const GpgpFileSystem* files, const TextShaper& text)
+      : document_(document), reporter_(reporter), limits_(limits), images_(images), detail_(detail), files_(files),
+        text_(text) {}
   core::Result<Imported> run();
   PageSize pageSize();
 
@@ -61,7 +67,7 @@ private:
     uint32_t fading = 0, clips = 0;   ///< groups around that fade, and that clip
   };
 
-  /// A <use> that is being shown.
+  /// A <use>, or a shape with markers, that is being shown.
   struct Context {
     const State* state = nullptr; ///< lives as long as it is shown
     pugi::xml_node node;
@@ -105,6 +111,18 @@ private:
   void content(pugi::xml_node node, std::string_view name, State& state, const double* useSize = nullptr);
   void reportChildren(pugi::xml_node node);
   void draw(pugi::xml_node node, std::string_view name, const State& state);
+  /// Draws what `inside` draws with the state's clip path and opacity around it.
+  void grouped(pugi::xml_node node, std::string_view name, State& state, const std::function<void(State&)>& inside);
+  /// Draws what `inside` draws, clipped to (0, 0, width, height) of the coordinates `frame` where it reaches beyond.
+  void clipped(pugi::xml_node node, const Affine& frame, double width, double height, State& state,
+               const std::function<void()>& inside);
+
+  // marker.cpp
+  struct Marker;
+  /// False where there is none to draw; what is wrong is said.
+  bool readMarker(const std::string& value, pugi::xml_node node, const State& state, Marker& marker);
+  /// `silent`: the verbs that end where the shape has no vertex.
+  void drawMarkers(pugi::xml_node node, const Shape& shape, const std::vector<size_t>& silent, const State& state);
 
   // clip.cpp
   /// Puts what the element refers to around it; says so where that cannot be.
@@ -114,11 +132,19 @@ private:
   /// Of all shapes inside, strokes and clips aside, in coordinates given by their transform to the page.
   Box boxAround(pugi::xml_node node, std::string_view name, State state, const Affine& space);
   void measure(const Shape& shape, const Affine& transform);
+  /// A pattern for one surface.
+  struct Tiling {
+    pugi::xml_node node, content; ///< the pattern, and the one along its references that has elements
+    State state;                  ///< of what is in the tile at its origin
+    Affine space{};               ///< from coordinates in which that tile's corner is the origin
+    double width = 0, height = 0; ///< of a tile
+  };
   /// What a paint property comes to.
   struct Ink {
     Color color;
     std::shared_ptr<const Gradient> gradient;
     std::shared_ptr<const GpgpImagePaint> image = nullptr;
+    std::shared_ptr<const Tiling> tiling = nullptr;
   };
   void emit(const Shape& shape, const Affine& transform, GpgpFillRule rule, const Ink& ink, double opacity,
             pugi::xml_node node);
@@ -127,6 +153,14 @@ private:
   void reportUnsupported(pugi::xml_node node, std::string_view name, const Style& style);
   bool stopped(pugi::xml_node node);
   void stop(pugi::xml_node node, const std::string& why);
+
+  // text.cpp
+  struct Text;
+  void drawText(pugi::xml_node node, const State& state);
+  void collectText(pugi::xml_node node, const State& state, bool preserves, Text& text);
+  void placeText(Text& text);
+  void shapeLine(Text& text, size_t first, size_t last);
+  void paintText(Text& text);
 
   // image.cpp
   struct Picture { // that was decoded; width 0: it could not be
@@ -137,7 +171,8 @@ private:
   void drawImage(pugi::xml_node node, const State& state);
 
   // shapes.cpp
-  Shape shapeOf(pugi::xml_node node, std::string_view name, const State& state);
+  /// `silent` receives the verbs of a path that end where it has no vertex.
+  Shape shapeOf(pugi::xml_node node, std::string_view name, const State& state, std::vector<size_t>* silent = nullptr);
   /// A length of an element: as style sheets say, else its attribute.
   double length(pugi::xml_node node, const Style& style, const char* name, const LengthContext& lengths,
                 LengthAxis axis, double otherwise, bool* given = nullptr);
@@ -153,7 +188,7 @@ private:
   Box boxOfContext(const Context& context);
 
   // gradient.cpp
-  /// A gradient, the one it refers to, and so on.
+  /// A gradient or pattern, the one it refers to, and so on.
   struct GradientChain {
     std::vector<pugi::xml_node> gradients;
     bool cyclic = false;        ///< the last refers to one of them
@@ -162,6 +197,12 @@ private:
   const GradientChain& chainOf(pugi::xml_node gradient);
   pugi::xml_attribute gradientAttribute(const GradientChain& chain, const char* name) const;
   std::vector<GpgpGradientStop> gradientStops(const GradientChain& chain, const LengthContext& lengths);
+  // pattern.cpp
+  /// Nothing where its tiles have no extent, or there is no box to measure them by.
+  std::shared_ptr<const Tiling> tilingOf(const GradientChain& chain, const Surface& surface);
+  void emitTiles(const Shape& shape, const Affine& transform, GpgpFillRule rule, const Tiling& tiling, double opacity,
+                 pugi::xml_node node);
+
   /// Nothing where it has no stops, or no box to be measured by.
   std::shared_ptr<const Gradient> gradientOf(const GradientChain& chain, bool radial, const Surface& surface);
 
@@ -186,6 +227,7 @@ private:
   uint32_t pictureCount_ = 0;
   StyleSheet sheet_;
   const GpgpFileSystem* files_;
+  const TextShaper text_;
   std::deque<std::string> sheetNames_;  // which places of messages refer to
   std::vector<std::string> openSheets_; // paths, each imported by the one before
   size_t sheetCount_ = 0, sheetBytes_ = 0;

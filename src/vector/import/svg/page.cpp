@@ -9,7 +9,7 @@ core::Result<PageSize> pageSize(std::span<const std::byte> bytes, const GpgpFile
   Document document;
   if (auto ok = document.load(bytes); !ok) return ok.error();
   Reporter quiet(nullptr, nullptr, "");
-  return Importer(document, quiet, {}, {}, {}, files).pageSize();
+  return Importer(document, quiet, {}, {}, {}, files, {}).pageSize();
 }
 
 PageSize Importer::pageSize() {
@@ -69,7 +69,7 @@ Importer::State Importer::begin() {
   const auto isPercent = [&](const char* name) {
     const std::string* styled = style.geometryOf(name);
     const std::string_view text = styled ? std::string_view(*styled) : root.attribute(name).value();
-    return text.find('%') != text.npos;
+    return text.find('%') != text.npos || text.find('v') != text.npos; // a part of what is not known, as vw
   };
   if (isPercent("width")) hasWidth = false;
   if (isPercent("height")) hasHeight = false;
@@ -91,6 +91,8 @@ Importer::State Importer::begin() {
     if (hasWidth) state.lengths.width = width;
     if (hasHeight) state.lengths.height = height;
   }
+  state.lengths.pageWidth = result_.width > 0 ? result_.width : state.lengths.width;
+  state.lengths.pageHeight = result_.height > 0 ? result_.height : state.lengths.height;
   toPage_ = state.transform;
   return state;
 }

@@ -6,8 +6,8 @@ namespace {
 
 class PathReader {
 public:
-  PathReader(std::string_view text, Shape& shape, double tolerance)
-      : scan_(text), shape_(shape), tolerance_(tolerance) {}
+  PathReader(std::string_view text, Shape& shape, double tolerance, std::vector<size_t>* silent)
+      : scan_(text), shape_(shape), tolerance_(tolerance), silent_(silent) {}
 
   size_t read() {
     scan_.skipSpace();
@@ -88,7 +88,10 @@ private:
     scan_.skipCommaSpace();
     if (!scan_.flag(positive) || !nextPoint(p)) return false;
     begin();
+    const size_t first = shape_.verbs.size();
     appendSvgArc(shape_, at_, values[0], values[1], values[2], large, positive, p, tolerance_);
+    if (silent_)
+      for (size_t i = first; i + 1 < shape_.verbs.size(); ++i) silent_->push_back(i);
     at_ = p;
     return true;
   }
@@ -105,6 +108,7 @@ private:
 
   /// After Z a segment begins a new contour where the last one began.
   void begin() {
+    if (!open_ && silent_) silent_->push_back(shape_.verbs.size());
     if (!open_) shape_.move(start_);
     open_ = true;
   }
@@ -137,6 +141,7 @@ private:
   Scanner scan_;
   Shape& shape_;
   double tolerance_;
+  std::vector<size_t>* silent_;
   Point start_, at_, control_;
   char previous_ = 'M';
   bool relative_ = false, open_ = false;
@@ -144,8 +149,8 @@ private:
 
 } // namespace
 
-size_t parsePathData(std::string_view text, Shape& shape, double tolerance) {
-  return PathReader(text, shape, tolerance).read();
+size_t parsePathData(std::string_view text, Shape& shape, double tolerance, std::vector<size_t>* silent) {
+  return PathReader(text, shape, tolerance, silent).read();
 }
 
 bool parsePoints(std::string_view text, bool close, Shape& shape) {

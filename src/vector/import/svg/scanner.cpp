@@ -1,6 +1,8 @@
 // Numbers, lengths and transform lists (SVG 2, chapters 4 and 8; CSS Values 4 for units).
 #include "vector/import/svg/scanner.h"
 
+#include "vector/import/svg/values.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -102,6 +104,7 @@ std::string_view Scanner::name() {
 
 bool parseLength(std::string_view text, const LengthContext& context, LengthAxis axis, double& value) {
   text = trim(text);
+  if (isMath(text)) return evaluate(text, context, axis, value);
   Scanner s(text);
   double v = 0;
   if (!s.number(v)) return false;
@@ -120,6 +123,12 @@ bool parseLength(std::string_view text, const LengthContext& context, LengthAxis
                {"ex", context.fontSize / 2},
                {"ch", context.fontSize / 2},
                {"q", 96 / 101.6},
+               {"vw", context.pageWidth / 100},
+               {"vi", context.pageWidth / 100},
+               {"vh", context.pageHeight / 100},
+               {"vb", context.pageHeight / 100},
+               {"vmin", std::min(context.pageWidth, context.pageHeight) / 100},
+               {"vmax", std::max(context.pageWidth, context.pageHeight) / 100},
                {"%", (axis == LengthAxis::X   ? context.width
                       : axis == LengthAxis::Y ? context.height
                                               : diagonal) /
@@ -192,7 +201,21 @@ bool parseTransform(std::string_view text, const LengthContext& context, Affine&
     s.skipSpace();
     while (!s.done() && s.peek() != ')') {
       const size_t start = s.offset();
-      if (count == 6 || !s.number(v[count])) return false;
+      if (count == 6) return false;
+      if (s.peek() >= 'a' && s.peek() <= 'z') { // calc() and the like
+        for (int depth = 0; !s.done(); s.advance()) {
+          depth += (s.peek() == '(') - (s.peek() == ')');
+          if (depth == 0 && s.peek() == ')') break;
+        }
+        if (!s.take(")")) return false;
+        const LengthAxis axis = count == 1 || name == "translatey" ? LengthAxis::Y : LengthAxis::X;
+        const std::string_view math = std::string_view(lower).substr(start, s.offset() - start);
+        if (!isMath(math) || !evaluate(math, context, axis, v[count])) return false;
+        ++count;
+        s.skipCommaSpace();
+        continue;
+      }
+      if (!s.number(v[count])) return false;
       if (moves && (s.peek() == '%' || (s.peek() >= 'a' && s.peek() <= 'z'))) {
         if (!s.take("%")) s.name();
         const LengthAxis axis = count == 1 || name == "translatey" ? LengthAxis::Y : LengthAxis::X;

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace gpgp::vector::svg {
 
@@ -47,6 +48,7 @@ bool isWord(std::string_view text, std::string_view word);
 /// What percentages and font units refer to.
 struct LengthContext {
   double width = 100, height = 100, fontSize = 16, rootFontSize = 16;
+  double pageWidth = 100, pageHeight = 100; ///< what vw and vh are parts of
 };
 enum class LengthAxis { X, Y, Diagonal };
 /// A length with unit in user units; false where it is none.
@@ -60,7 +62,8 @@ bool parseTransform(std::string_view text, const LengthContext& context, Affine&
 bool parseOrigin(std::string_view text, const LengthContext& context, Point& origin);
 
 /// Appends path data. On an error, what came before it stays and the offset of the error is returned, otherwise npos.
-size_t parsePathData(std::string_view text, Shape& shape, double tolerance);
+/// `silent` receives the indices of verbs that end where the path has no vertex: inside an arc, or after a Z.
+size_t parsePathData(std::string_view text, Shape& shape, double tolerance, std::vector<size_t>* silent = nullptr);
 
 /// Appends the points of a polyline or polygon; false where the list is malformed or odd (the good part stays).
 bool parsePoints(std::string_view text, bool close, Shape& shape);

@@ -25,6 +25,10 @@ double Importer::length(pugi::xml_node node, const Style& style, const char* nam
   const std::string_view text = trim(styled ? std::string_view(*styled) : a.value());
   if ((!a && !styled) || text == "auto") return otherwise;
   double value = 0;
+  if (hasVariables(text)) {
+    const std::optional<std::string> plain = withoutVariables(text, style.variables.get());
+    if (plain && parseLength(*plain, lengths, axis, value)) return (given ? *given = true : true), value;
+  }
   if (!parseLength(text, lengths, axis, value)) {
     noLength(node, styled ? document_.place(node) : document_.place(a, 0), name, text);
     return otherwise;
@@ -43,7 +47,7 @@ double Importer::extent(pugi::xml_node node, const Style& style, const char* nam
   return negative ? otherwise : value;
 }
 
-Shape Importer::shapeOf(pugi::xml_node node, std::string_view name, const State& state) {
+Shape Importer::shapeOf(pugi::xml_node node, std::string_view name, const State& state, std::vector<size_t>* silent) {
   LengthContext lengths = state.lengths;
   lengths.fontSize = state.style.fontSize;
   const double scale = state.transform.scale();
@@ -71,7 +75,7 @@ Shape Importer::shapeOf(pugi::xml_node node, std::string_view name, const State&
     const pugi::xml_attribute d = node.attribute("d");
     const std::string* styled = state.style.geometryOf("d");
     const std::string_view data = styled ? insidePath(*styled) : d.value();
-    const size_t bad = parsePathData(data, shape, tolerance);
+    const size_t bad = parsePathData(data, shape, tolerance, silent);
     if (bad != std::string_view::npos)
       reporter_.error(styled ? document_.place(node) : document_.place(d, bad),
                       element(node) + " has an error in its path data at character " + std::to_string(bad + 1) +

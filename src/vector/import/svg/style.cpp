@@ -72,6 +72,7 @@ bool parsePaint(std::string_view text, Paint& paint) {
 bool parseOpacity(std::string_view text, double& value) {
   Scanner s(text);
   double v = 0;
+  if (isMath(text)) return evaluate(text, {1, 1}, LengthAxis::X, v) && (value = std::clamp(v, 0.0, 1.0), true);
   if (!s.number(v)) return false;
   if (s.take("%")) v /= 100;
   if (!s.done()) return false;
@@ -101,14 +102,17 @@ bool parseFontSize(std::string_view v, const Style& parent, LengthContext length
 }
 
 /// What is before the size, the size, what may be a line's height, and families.
-bool parseFont(std::string_view text, const Style& parent, const LengthContext& lengths, double& size) {
+bool parseFont(std::string_view text, const Style& parent, const LengthContext& lengths, double& size,
+               TextStyle& style) {
+  TextStyle own = style;
+  own.weight = 400, own.italic = own.smallCaps = false, own.families.clear();
   constexpr std::string_view systems[] = {"caption", "icon", "menu", "message-box", "small-caption", "status-bar"};
   constexpr std::string_view before[] = {
       "normal",         "italic",        "oblique",         "small-caps",      "bold",
       "bolder",         "lighter",       "ultra-condensed", "extra-condensed", "condensed",
       "semi-condensed", "semi-expanded", "expanded",        "extra-expanded",  "ultra-expanded"};
   const std::string lower = lowered(text);
-  if (oneOf(lower, systems)) return size = Style{}.fontSize, true;
+  if (oneOf(lower, systems)) return style = own, size = Style{}.fontSize, true;
   std::string_view rest = lower;
   const auto word = [&rest] { return rest.substr(0, rest.find_first_of(" \t\r\n\f/")); };
   double weight = 0;
@@ -124,6 +128,10 @@ bool parseFont(std::string_view text, const Style& parent, const LengthContext& 
   };
   for (int i = 0; i < 4 && (oneOf(word(), before) || isWeight(word())); ++i) {
     const bool slanted = word() == "oblique";
+    own.italic |= slanted || word() == "italic";
+    own.smallCaps |= word() == "small-caps";
+    if (word() == "bold" || word() == "bolder") own.weight = 700;
+    if (isWeight(word())) own.weight = weight;
     rest = trim(rest.substr(word().size()));
     if (slanted && isAngle(word())) rest = trim(rest.substr(word().size()));
   }
@@ -136,7 +144,8 @@ bool parseFont(std::string_view text, const Style& parent, const LengthContext& 
     if (word() != "normal" && !parseLength(word(), lengths, LengthAxis::X, height)) return false;
     rest = trim(rest.substr(word().size()));
   }
-  return !rest.empty() && (size = read, true);
+  own.families = text.substr(text.size() - rest.size());
+  return !rest.empty() && (size = read, style = own, true);
 }
 
 template <class T> struct Word {
@@ -174,7 +183,8 @@ bool setStrokeWidth(const Context& c) {
 bool setMiterLimit(const Context& c) {
   double v = 0;
   Scanner s(c.value);
-  return s.number(v) && s.done() && v >= 1 && (c.style.miterLimit = v, true);
+  const bool isNumber = isMath(c.value) ? evaluate(c.value, {}, LengthAxis::X, v) : s.number(v) && s.done();
+  return isNumber && v >= 1 && (c.style.miterLimit = v, true);
 }
 bool setColor(const Context& c) {
   if (isCurrentColor(c.value)) return c.style.color = c.parent.color, true;
@@ -197,9 +207,12 @@ bool setPaintOrder(const Context& c) {
     if (!isNormal && (!oneOf(part, parts) || std::find(order.begin(), order.end(), part) != order.end())) return false;
     if (!isNormal) order.push_back(part);
   }
-  const auto at = [&order](std::string_view part) { return std::find(order.begin(), order.end(), part); };
-  c.style.strokeFirst = at("stroke") < at("fill");
-  return !lower.empty();
+  if (lower.empty()) return false;
+  for (const std::string_view part : parts)
+    if (std::find(order.begin(), order.end(), part) == order.end()) order.push_back(part);
+  for (size_t i = 0; i < order.size(); ++i)
+    c.style.paintOrder[i] = static_cast<Style::Part>(std::find(parts, std::end(parts), order[i]) - parts);
+  return true;
 }
 /// Words of CSS Display and those of CSS 2 for text and tables.
 bool setDisplay(const Context& c) {
@@ -294,10 +307,43 @@ bool setBackground(const Context& c) {
   }
   return !c.value.empty() && (c.style.background = background, true);
 }
-bool setMarker(const Context& c, bool& marker) { return marker = !isWord(c.value, "none"), !c.value.empty(); }
+bool setMarker(const Context& c, std::string& marker) {
+  const bool isNone = isWord(c.value, "none");
+  if (!isNone && !isWord(c.value.substr(0, 4), "url(")) return false;
+  return marker = isNone ? std::string_view() : c.value, true;
+}
 bool setMarkers(const Context& c) {
-  std::array<bool, 3>& all = c.style.markers;
-  return setMarker(c, all[0]) && (all = {all[0], all[0], all[0]}, true);
+  std::string all;
+  return setMarker(c, all) && (c.style.markers.fill(all), true);
+}
+bool setWeight(const Context& c) {
+  constexpr Word<double> names[] = {{"normal", 400}, {"bold", 700}};
+  double& weight = c.style.text.weight;
+  const double above = c.parent.text.weight;
+  if (isWord(c.value, "bolder")) return weight = above < 350 ? 400 : above < 550 ? 700 : 900, true;
+  if (isWord(c.value, "lighter")) return weight = above < 550 ? 100 : above < 750 ? 400 : 700, true;
+  if (choose(c.value, names, weight)) return true;
+  Scanner s(c.value);
+  double v = 0;
+  return s.number(v) && s.done() && v >= 1 && v <= 1000 && (weight = v, true);
+}
+bool setSpacing(const Context& c, double& spacing) {
+  if (isWord(c.value, "normal")) return spacing = 0, true;
+  return parseLength(c.value, c.lengths, LengthAxis::X, spacing);
+}
+bool setSpace(const Context& c) {
+  const std::string_view first = c.value.substr(0, c.value.find(' '));
+  const bool keeps = isWord(first, "pre") || isWord(first, "pre-wrap") || isWord(first, "break-spaces");
+  c.style.text.space = keeps ? TextStyle::Space::Preserve : TextStyle::Space::Collapse;
+  return !c.value.empty();
+}
+constexpr Word<double> kAnchors[] = {{"start", 0}, {"middle", 0.5}, {"end", 1}};
+constexpr Word<bool> kDirections[] = {{"ltr", false}, {"rtl", true}};
+bool setVertical(const Context& c) {
+  const std::string lower = lowered(c.value);
+  return c.style.text.vertical =
+             lower.starts_with("tb") || lower.starts_with("vertical") || lower.starts_with("sideways"),
+         !lower.empty();
 }
 bool setRefers(const Context& c, bool& flag) { return flag = !isWord(c.value, "none") && !c.value.empty(), true; }
 
@@ -331,8 +377,8 @@ const Property kProperties[] = {
     GPGP_PROPERTY("display", displayed, setDisplay(c)),
     GPGP_PROPERTY("overflow", overflowVisible, setOverflow(c)),
     GPGP_PROPERTY("font-size", fontSize, parseFontSize(c.value, c.parent, c.lengths, c.style.fontSize)),
-    GPGP_PROPERTY("font", fontSize, parseFont(c.value, c.parent, c.lengths, c.style.fontSize)),
-    GPGP_PROPERTY("paint-order", strokeFirst, setPaintOrder(c)),
+    GPGP_PROPERTY("font", fontSize, parseFont(c.value, c.parent, c.lengths, c.style.fontSize, c.style.text)),
+    GPGP_PROPERTY("paint-order", paintOrder, setPaintOrder(c)),
     GPGP_PROPERTY("vector-effect", nonScalingStroke, setVectorEffect(c)),
     GPGP_PROPERTY("background", background, setBackground(c)),
     GPGP_PROPERTY("background-color", background.color, setBackgroundColor(c)),
@@ -345,6 +391,22 @@ const Property kProperties[] = {
     GPGP_PROPERTY("mask", mask, setRefers(c, c.style.mask)),
     GPGP_PROPERTY("filter", filter, setRefers(c, c.style.filter)),
     GPGP_PROPERTY("mix-blend-mode", blendMode, (c.style.blendMode = !isWord(c.value, "normal"), true)),
+    GPGP_PROPERTY("font-family", text.families, (c.style.text.families = c.value, !c.value.empty())),
+    GPGP_PROPERTY("font-weight", text.weight, setWeight(c)),
+    GPGP_PROPERTY("font-style", text.italic, (c.style.text.italic = !isWord(c.value, "normal"), !c.value.empty())),
+    GPGP_PROPERTY("font-variant", text.smallCaps,
+                  (c.style.text.smallCaps = lowered(c.value).find("small-caps") != std::string::npos, true)),
+    GPGP_PROPERTY("letter-spacing", text.letterSpacing, setSpacing(c, c.style.text.letterSpacing)),
+    GPGP_PROPERTY("word-spacing", text.wordSpacing, setSpacing(c, c.style.text.wordSpacing)),
+    GPGP_PROPERTY("text-anchor", text.anchor, choose(c.value, kAnchors, c.style.text.anchor)),
+    GPGP_PROPERTY("direction", text.rightToLeft, choose(c.value, kDirections, c.style.text.rightToLeft)),
+    GPGP_PROPERTY("writing-mode", text.vertical, setVertical(c)),
+    GPGP_PROPERTY("white-space", text.space, setSpace(c)),
+    GPGP_PROPERTY("dominant-baseline", text.dominantBaseline, (c.style.text.dominantBaseline = lowered(c.value), true)),
+    GPGP_PROPERTY("alignment-baseline", text.alignmentBaseline,
+                  (c.style.text.alignmentBaseline = lowered(c.value), true)),
+    GPGP_PROPERTY("baseline-shift", text.baselineShift, (c.style.text.baselineShift = lowered(c.value), true)),
+    GPGP_PROPERTY("text-decoration", text.decoration, (c.style.text.decoration = lowered(c.value), true)),
     GPGP_PROPERTY("marker", markers, setMarkers(c)),
     GPGP_PROPERTY("marker-start", markers[0], setMarker(c, c.style.markers[0])),
     GPGP_PROPERTY("marker-mid", markers[1], setMarker(c, c.style.markers[1])),
@@ -369,6 +431,7 @@ Style Style::inherited() const {
   s.overflowVisible = fresh.overflowVisible;
   s.background = fresh.background;
   s.unsupportedEffect = false;
+  s.text.baselineShift.clear(), s.text.alignmentBaseline.clear(), s.text.decoration.clear();
   s.stopColor = fresh.stopColor;
   s.stopOpacity = fresh.stopOpacity;
   s.clipPath.clear();

@@ -2,6 +2,7 @@
 #pragma once
 #include "vector/geometry/stroke.h"
 #include "vector/import/svg/scanner.h"
+#include "vector/import/svg/values.h"
 
 #include <array>
 #include <string>
@@ -27,6 +28,17 @@ struct Paint {
   bool hasFallback = false;
 };
 
+struct TextStyle {
+  // inherited
+  std::string families, dominantBaseline;
+  double weight = 400, letterSpacing = 0, wordSpacing = 0;
+  bool italic = false, smallCaps = false, rightToLeft = false, vertical = false;
+  double anchor = 0; ///< how much of a line lies before its place
+  enum class Space { AsXml, Collapse, Preserve } space = Space::AsXml;
+  // not inherited
+  std::string baselineShift, alignmentBaseline, decoration;
+};
+
 struct Style {
   // inherited
   Paint fill{Paint::Kind::Solid, {}, {}, Paint::Kind::None, false}, stroke;
@@ -36,9 +48,13 @@ struct Style {
   Join join = Join::Miter;
   std::vector<double> dashes;
   Color color;
-  bool visible = true, strokeFirst = false, mixesLinear = false; ///< the last: of its gradient's stops
+  bool visible = true, mixesLinear = false; ///< the last: of its gradient's stops
   double fontSize = 16;
-  std::array<bool, 3> markers{}; ///< at the start, in the middle, at the end
+  enum class Part { Fill, Stroke, Markers };
+  std::array<Part, 3> paintOrder{Part::Fill, Part::Stroke, Part::Markers};
+  std::array<std::string, 3> markers; ///< at the start, in the middle, at the end: what they say, unless none
+  TextStyle text;
+  std::shared_ptr<const CustomProperties> variables;
   // not inherited
   double opacity = 1;
   bool displayed = true, nonScalingStroke = false, overflowVisible = false;

@@ -30,7 +30,8 @@ size_t pastToken(std::string_view text, size_t at) {
   return at + 1;
 }
 
-/// The first of `marks` from `at` on that is in no comment, string or brackets; the text's size where there is none.
+} // namespace
+
 size_t findOutside(std::string_view text, size_t at, std::string_view marks) {
   std::string open; // what closes the brackets around
   for (; at < text.size(); at = pastToken(text, at)) {
@@ -44,6 +45,7 @@ size_t findOutside(std::string_view text, size_t at, std::string_view marks) {
   return text.size();
 }
 
+namespace {
 /// Comments become spaces, as they are between the parts of a value.
 std::string withoutComments(std::string_view text) {
   std::string out(text);
@@ -62,18 +64,6 @@ size_t pastSpace(std::string_view text, size_t at) {
   return at;
 }
 
-/// The same inside a selector; whether there was a space, which a comment is not.
-bool skipSpace(Scanner& s, bool spaces = true) {
-  bool skipped = false;
-  for (;;) {
-    const size_t at = s.offset();
-    if (spaces) s.skipSpace();
-    skipped |= s.offset() > at;
-    if (!s.take("/*")) return skipped;
-    while (!s.done() && !s.take("*/")) s.advance();
-  }
-}
-
 /// Separators in comments, strings and brackets do not count.
 template <class F> void split(std::string_view text, char separator, F&& part) {
   for (size_t begin = 0; begin <= text.size();) {
@@ -81,17 +71,6 @@ template <class F> void split(std::string_view text, char separator, F&& part) {
     part(text.substr(begin, end - begin));
     begin = end + 1;
   }
-}
-
-/// At most 64 of them.
-std::vector<std::string_view> wordsOf(std::string_view text) {
-  std::vector<std::string_view> words;
-  while (!(text = trim(text)).empty() && words.size() < 64) {
-    const size_t end = std::min(text.find_first_of(" \t\r\n\f"), text.size());
-    words.push_back(text.substr(0, end));
-    text.remove_prefix(end);
-  }
-  return words;
 }
 
 /// The address of url(a), url("a") or "a", and what follows it.
@@ -123,7 +102,9 @@ std::vector<Declaration> parseDeclarations(std::string_view original) {
       if (part = trim(part); !part.empty()) declarations.push_back({"", std::string(part), false});
       return;
     }
-    Declaration d{lowered(trim(part.substr(0, colon))), std::string(trim(part.substr(colon + 1))), false};
+    const std::string_view written = trim(part.substr(0, colon));
+    Declaration d{written.starts_with("--") ? std::string(written) : lowered(written),
+                  std::string(trim(part.substr(colon + 1))), false};
     const size_t mark = d.value.rfind('!');
     if (mark != d.value.npos && isWord(trim(std::string_view(d.value).substr(mark + 1)), "important")) {
       d.important = true;
@@ -227,11 +208,11 @@ void StyleSheet::readRule(std::string_view selectors, std::string_view declarati
     if (rules_.size() + rules.size() >= kMaxRules) return;
     Rule rule;
     rule.block = block;
-    const Selector read = readSelector(selector, rule);
-    if (read == Selector::Read) return rules.push_back(std::move(rule));
+    const Selector::Read read = rule.selector.parse(selector);
+    if (read == Selector::Read::Yes) return rules.push_back(std::move(rule));
     const std::string said =
         std::string("style selector '") + std::string(trim(withoutComments(selector)).substr(0, 60)) + "' is ";
-    if (read == Selector::Unsupported) return reading.reporter.warn(place, said + "not supported");
+    if (read == Selector::Read::Unsupported) return reading.reporter.warn(place, said + "not supported");
     valid = false; // and with it all of the rule
     reading.reporter.ignored(place, said + "not valid; its rule is ignored");
   });
@@ -239,173 +220,22 @@ void StyleSheet::readRule(std::string_view selectors, std::string_view declarati
     for (Rule& rule : rules) add(std::move(rule));
 }
 
-/// Behind "[", up to and with "]".
-bool StyleSheet::AttributeTest::parse(Scanner& s) {
-  skipSpace(s);
-  name = s.name();
-  skipSpace(s);
-  if (name.empty() || s.take("]")) return !name.empty();
-  how = s.peek();
-  Scanner ahead = s;
-  ahead.advance();
-  if (how == '|' && ahead.peek() != '=') return false; // a namespace
-  if (how != '=') s.advance();
-  if (std::string_view("=~|^$*").find(how) == std::string_view::npos || !s.take("=")) return false;
-  skipSpace(s);
-  if (const char quote = s.peek(); quote == '"' || quote == '\'') {
-    for (s.advance(); !s.done() && s.peek() != quote; s.advance()) value += s.peek();
-    if (s.done()) return false;
-    s.advance();
-  } else {
-    value = s.name();
-    if (value.empty()) return false;
-  }
-  skipSpace(s);
-  return s.take("]");
-}
-
-bool StyleSheet::Compound::parse(Scanner& s) {
-  const size_t begin = s.offset();
-  if (!s.take("*")) type = s.name();
-  for (;;) {
-    skipSpace(s, false);
-    if (s.take("#")) {
-      if (!id.empty()) return false;
-      id = s.name();
-      if (id.empty()) return false;
-    } else if (s.take(".")) {
-      classes.emplace_back(s.name());
-      if (classes.back().empty()) return false;
-    } else if (s.take("[")) {
-      if (!attributes.emplace_back().parse(s)) return false;
-    } else {
-      Scanner ahead = s; // of other pseudo-classes the caller sees the colon
-      if (!ahead.take(":") || !isWord(ahead.name(), "root") || ahead.peek() == '(') return s.offset() > begin;
-      s = ahead;
-      ++roots;
-    }
-  }
-}
-
-StyleSheet::Selector StyleSheet::readSelector(std::string_view text, Rule& rule) const {
-  constexpr size_t kMaxCompounds = 16, kMaxParts = 64; // classes and attributes
-  size_t ids = 0, parts = 0, types = 0;
-  Scanner s(text);
-  skipSpace(s);
-  // Pseudo-classes, namespaces and how attributes' letters compare are valid, whether or not they are known.
-  const auto failed = [&s] {
-    return std::string_view(":|iIsS").find(s.peek()) != std::string_view::npos && !s.done() ? Selector::Unsupported
-                                                                                            : Selector::Invalid;
-  };
-  for (char combinator = 0;;) {
-    Compound compound;
-    compound.combinator = combinator;
-    if (!compound.parse(s)) return failed();
-    if (rule.compounds.size() == kMaxCompounds) return Selector::Unsupported;
-    ids += !compound.id.empty();
-    types += !compound.type.empty();
-    parts += compound.classes.size() + compound.attributes.size() + compound.roots;
-    if (parts > kMaxParts) return Selector::Unsupported;
-    rule.compounds.push_back(std::move(compound));
-    combinator = skipSpace(s) ? ' ' : 0;
-    if (s.done()) break;
-    if (std::string_view(">+~").find(s.peek()) != std::string_view::npos) {
-      combinator = s.peek();
-      s.advance();
-      skipSpace(s);
-    }
-    if (combinator == 0) return failed();
-  }
-  rule.specificity = static_cast<uint32_t>(ids << 16 | parts << 8 | types);
-  return Selector::Read;
-}
-
 void StyleSheet::add(Rule rule) {
-  const Compound& own = rule.compounds.back();
-  std::string key = "*";
-  if (!own.id.empty())
-    key.assign(1, '#').append(own.id);
-  else if (!own.classes.empty())
-    key.assign(1, '.').append(own.classes[0]);
-  else if (!own.type.empty())
-    key = own.type;
-  byKey_[key].push_back(rules_.size());
+  byKey_[rule.selector.key()].push_back(rules_.size());
   rules_.push_back(std::move(rule));
 }
-
-bool StyleSheet::AttributeTest::fits(std::string_view is) const {
-  const bool found = !value.empty() && is.find(value) != std::string_view::npos;
-  switch (how) {
-  case '=': return is == value;
-  case '~': {
-    const auto words = wordsOf(is);
-    return std::find(words.begin(), words.end(), value) != words.end();
-  }
-  case '|': return is.substr(0, value.size()) == value && (is.size() == value.size() || is[value.size()] == '-');
-  case '^': return found && is.substr(0, value.size()) == value;
-  case '$': return found && is.substr(is.size() - value.size()) == value;
-  case '*': return found;
-  default: return true;
-  }
-}
-
-/// Counts what it compares; beyond `most` nothing fits.
-struct StyleSheet::Matching {
-  const Document& document;
-  size_t& work;
-  size_t most;
-
-  pugi::xml_attribute attribute(pugi::xml_node node, std::string_view name) {
-    for (const pugi::xml_attribute a : node.attributes()) {
-      ++work;
-      if (a.name() != name) continue;
-      work += std::string_view(a.value()).size() / 16; // which will be looked through
-      return a;
-    }
-    return {};
-  }
-  bool fits(const Compound& compound, pugi::xml_node node) {
-    if (++work >= most || (!compound.type.empty() && document.name(node) != compound.type)) return false;
-    if (compound.roots && node != document.root()) return false;
-    if (!compound.id.empty() && attribute(node, "id").value() != compound.id) return false;
-    if (!compound.classes.empty()) {
-      const auto names = wordsOf(attribute(node, "class").value());
-      work += names.size() * compound.classes.size();
-      for (const std::string& name : compound.classes)
-        if (std::find(names.begin(), names.end(), name) == names.end()) return false;
-    }
-    return std::all_of(compound.attributes.begin(), compound.attributes.end(), [&](const AttributeTest& test) {
-      const pugi::xml_attribute a = attribute(node, test.name);
-      return a && test.fits(a.value());
-    });
-  }
-  /// Whether the compounds up to `last` fit, the last the element.
-  bool fits(const Rule& rule, size_t last, pugi::xml_node node) {
-    if (!fits(rule.compounds[last], node)) return false;
-    const char combinator = rule.compounds[last].combinator;
-    if (combinator == 0) return true;
-    const bool up = combinator == ' ' || combinator == '>', once = combinator == '>' || combinator == '+';
-    while ((node = up ? node.parent() : node.previous_sibling()) && work < most) {
-      ++work;
-      if (node.type() != pugi::node_element) continue;
-      if (fits(rule, last - 1, node)) return true;
-      if (once) return false;
-    }
-    return false;
-  }
-};
 
 std::vector<const Declaration*> StyleSheet::match(const Document& document, pugi::xml_node node, size_t& work,
                                                   size_t most) const {
   std::vector<const Declaration*> declarations;
   if (rules_.empty()) return declarations;
-  Matching matching{document, work, most};
+  MatchBudget budget{work, most};
   std::vector<size_t> found;
   const auto collect = [&](const std::string& key) {
     const auto at = byKey_.find(key);
     if (at == byKey_.end()) return;
     for (const size_t index : at->second)
-      if (matching.fits(rules_[index], rules_[index].compounds.size() - 1, node)) found.push_back(index);
+      if (rules_[index].selector.fits(document, node, budget)) found.push_back(index);
   };
   collect("*");
   collect(std::string(document.name(node)));
@@ -415,7 +245,8 @@ std::vector<const Declaration*> StyleSheet::match(const Document& document, pugi
   for (const std::string_view name : names) collect(std::string(1, '.').append(name));
   if (const std::string_view id = node.attribute("id").value(); !id.empty()) collect(std::string(1, '#').append(id));
   std::sort(found.begin(), found.end(), [this](size_t a, size_t b) {
-    return rules_[a].specificity != rules_[b].specificity ? rules_[a].specificity < rules_[b].specificity : a < b;
+    const uint32_t first = rules_[a].selector.specificity(), second = rules_[b].selector.specificity();
+    return first != second ? first < second : a < b;
   });
   for (const size_t index : found)
     for (const Declaration& d : blocks_[rules_[index].block]) {

@@ -1,9 +1,8 @@
-// Style sheets: @import, @media, and rules' selectors with their declarations. Of Selectors 3, pseudo-classes other
-// than :root, pseudo-elements, namespaces and escapes are not supported.
+// Style sheets: @import, @media, and rules' selectors with their declarations.
 #pragma once
 #include "vector/import/svg/document.h"
 #include "vector/import/svg/reporter.h"
-#include "vector/import/svg/scanner.h"
+#include "vector/import/svg/selector.h"
 
 #include <functional>
 #include <string>
@@ -35,26 +34,8 @@ public:
   bool empty() const { return rules_.empty(); }
 
 private:
-  /// [name], or with a value compared by =, ~ (one of the words), | (it, or it and a hyphen), ^ (begins), $ (ends), *.
-  struct AttributeTest {
-    std::string name, value;
-    char how = 0;
-    bool parse(Scanner& s);
-    bool fits(std::string_view is) const;
-  };
-  /// What one element has to be, and where it stands: below that of the compound before (a space), its child (>), after
-  /// it (~) or next to it (+); 0: there is none before.
-  struct Compound {
-    char combinator = 0;
-    std::string type, id;
-    std::vector<std::string> classes;
-    std::vector<AttributeTest> attributes;
-    size_t roots = 0; ///< how often it says :root, each of which counts as a class does
-    bool parse(Scanner& s);
-  };
   struct Rule {
-    std::vector<Compound> compounds; ///< the last is of the element itself
-    uint32_t specificity = 0;
+    Selector selector;
     size_t block = 0;
   };
   struct Reading {
@@ -67,10 +48,7 @@ private:
   void readAtRule(std::string_view name, std::string_view prelude, std::string_view block, const Place& place,
                   const Place& blockPlace, Reading& reading);
   void readRule(std::string_view selectors, std::string_view block, const Place& place, Reading& reading);
-  enum class Selector { Read, Unsupported, Invalid };
-  Selector readSelector(std::string_view text, Rule& rule) const;
   void add(Rule rule);
-  struct Matching;
 
   std::vector<Rule> rules_;
   std::vector<std::vector<Declaration>> blocks_;

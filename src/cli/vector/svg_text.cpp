@@ -1,0 +1,157 @@
+#include "cli/vector/svg_text.h"
+
+#include "cli/shared/command.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace gpgp::cli {
+namespace {
+
+std::string lowered(std::string_view text) {
+  std::string small(text);
+  for (char& c : small) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c);
+  return small;
+}
+
+/// "Arial, 'DejaVu Sans'" as names in small letters.
+std::vector<std::string> familiesOf(std::string_view list) {
+  std::vector<std::string> names;
+  while (!list.empty()) {
+    const size_t end = std::min(list.find(','), list.size());
+    std::string_view name = list.substr(0, end);
+    const size_t first = name.find_first_not_of(" \t\n'\""), last = name.find_last_not_of(" \t\n'\"");
+    if (first != name.npos) names.push_back(lowered(name.substr(first, last + 1 - first)));
+    list.remove_prefix(std::min(end + 1, list.size()));
+  }
+  return names;
+}
+
+void check(GpgpResult result) {
+  if (result != GPGP_SUCCESS) throw std::runtime_error("text");
+}
+
+} // namespace
+
+SvgText::SvgText(const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
+    GpgpFontCreateInfo info = init<GpgpFontCreateInfo>();
+    info.filePath = file.c_str();
+    Result<Font> font = Font::create(info);
+    if (!font) throw Failure(file + ": no font that can be read (" + font.name() + ")");
+    const Result<GpgpFontInfo> about = font->info();
+    if (!about) throw Failure(file + ": " + about.name());
+    const std::string style = lowered(about->style ? about->style : "");
+    const auto has = [&style](const char* word) { return style.find(word) != std::string::npos; };
+    faces_.push_back({std::move(*font), *about, lowered(about->family ? about->family : ""), has("bold"),
+                      has("italic") || has("oblique")});
+  }
+  if (faces_.empty()) return;
+  Result<Shaper> shaper = Shaper::create();
+  if (!shaper) throw Failure(std::string("text cannot be shaped: ") + shaper.name());
+  shaper_ = std::move(*shaper);
+  Result<Layout> layout = shaper_.layout();
+  if (!layout) throw Failure(std::string("text cannot be shaped: ") + layout.name());
+  layout_ = std::move(*layout);
+}
+
+void SvgText::attach(GpgpSvgSource& source) {
+  if (faces_.empty()) return;
+  source.textFn = shape;
+  source.textUserData = this;
+}
+
+std::vector<GpgpFont> SvgText::chosen(const GpgpSvgTextSpan& span) const {
+  const std::vector<std::string> families = familiesOf(span.families);
+  const auto rank = [&](const Face& face) { // the smallest first
+    const auto at = std::find(families.begin(), families.end(), face.family) - families.begin();
+    return std::pair(at, (face.bold != (span.weight >= 550)) + 2 * (face.italic != (span.italic != 0)));
+  };
+  std::vector<const Face*> order;
+  for (const Face& face : faces_) order.push_back(&face);
+  std::stable_sort(order.begin(), order.end(), [&](const Face* a, const Face* b) { return rank(*a) < rank(*b); });
+  std::vector<GpgpFont> fonts;
+  for (const Face* face : order) fonts.push_back(face->font.get());
+  return fonts;
+}
+
+void SvgText::shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyphData) {
+  const GpgpFontFeature smallCaps{GPGP_TAG('s', 'm', 'c', 'p'), 1};
+  std::vector<std::vector<GpgpFont>> fonts(text.spanCount);
+  std::vector<GpgpTextSpan> spans(text.spanCount);
+  for (uint32_t i = 0; i < text.spanCount; ++i) {
+    const GpgpSvgTextSpan& from = text.spans[i];
+    fonts[i] = chosen(from);
+    spans[i].begin = from.begin, spans[i].end = from.end;
+    GpgpTextStyle& style = spans[i].style;
+    style.fonts = fonts[i].data();
+    style.fontCount = static_cast<uint32_t>(fonts[i].size());
+    style.size = from.size;
+    style.letterSpacing = from.letterSpacing;
+    style.language = *from.language ? from.language : nullptr;
+    if (from.smallCaps) style.features = &smallCaps, style.featureCount = 1;
+  }
+  GpgpTextInfo info = init<GpgpTextInfo>();
+  info.text = text.text;
+  info.size = text.size;
+  info.style = spans[0].style;
+  info.spans = spans.data();
+  info.spanCount = text.spanCount;
+  info.direction = text.rightToLeft ? GPGP_TEXT_RIGHT_TO_LEFT : GPGP_TEXT_LEFT_TO_RIGHT;
+  info.align = GPGP_TEXT_ALIGN_LEFT;
+  check(layout_.set(info));
+  const Result<GpgpLayoutInfo> made = layout_.info();
+  check(made.code());
+  const GpgpTextLine& line = made->lines[0];
+  float edge = 0; // what the glyphs are measured from: white space may hang out on the left
+  for (uint32_t i = 0; i < line.glyphCount; ++i) edge = std::min(edge, made->glyphs[line.firstGlyph + i].x);
+  std::vector<uint32_t> ends{text.size}; // of clusters
+  for (uint32_t i = 0; i < line.glyphCount; ++i) ends.push_back(made->glyphs[line.firstGlyph + i].cluster);
+  std::sort(ends.begin(), ends.end());
+  uint32_t previous = UINT32_MAX;
+  for (uint32_t i = 0; i < line.glyphCount; ++i) {
+    const GpgpTextGlyph& glyph = made->glyphs[line.firstGlyph + i];
+    const auto face =
+        std::find_if(faces_.begin(), faces_.end(), [&](const Face& f) { return f.font.get() == glyph.font; });
+    if (face == faces_.end()) continue;
+    GpgpSvgGlyph out{};
+    out.cluster = glyph.cluster;
+    out.x = glyph.x - edge;
+    out.y = glyph.y - line.baseline;
+    out.size = glyph.size;
+    if (glyph.cluster != previous) { // up to the next cluster
+      const auto behind = std::upper_bound(ends.begin(), ends.end(), glyph.cluster);
+      const uint32_t end = behind == ends.end() ? text.size : *behind;
+      GpgpTextRect rects[8];
+      uint32_t count = 8;
+      if (layout_.selection(glyph.cluster, end, count, rects) == GPGP_SUCCESS)
+        for (uint32_t k = 0; k < count; ++k) out.advance += rects[k].width;
+    }
+    previous = glyph.cluster;
+    const GpgpFontInfo& f = face->info;
+    out.ascent = f.ascent, out.descent = f.descent, out.xHeight = f.xHeight;
+    out.underlinePosition = f.underlinePosition, out.underlineThickness = f.underlineThickness;
+    out.strikePosition = f.strikePosition, out.strikeThickness = f.strikeThickness;
+    GpgpGlyphOutlineInfo outlineInfo = init<GpgpGlyphOutlineInfo>();
+    outlineInfo.glyph = glyph.glyph;
+    check(face->font.outline(outlineInfo, [&](const GpgpGlyphOutline& outline) {
+      out.paths = outline.paths;
+      out.pathCount = outline.pathCount;
+      out.foreground = outline.foreground;
+      out.incomplete = outline.incomplete || outline.image;
+      glyphFn(glyphData, &out);
+    }));
+  }
+}
+
+GpgpResult GPGP_CALL SvgText::shape(void* userData, const GpgpSvgText* text, GpgpSvgGlyphFn glyphFn, void* glyphData) {
+  try {
+    static_cast<SvgText*>(userData)->shape(*text, glyphFn, glyphData);
+    return GPGP_SUCCESS;
+  } catch (...) { // the compiler, which calls this, throws nothing on
+    return GPGP_ERROR_UNSUPPORTED;
+  }
+}
+
+} // namespace gpgp::cli

@@ -1,0 +1,410 @@
+// A drawing with a feature of SVG is the same drawing written without it: markers placed by hand, style sheets as
+// attributes, patterns as copies, text as outlines.
+#include "svg_import.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+using namespace gpgp;
+using namespace gpgp::test;
+
+using Texts = std::vector<std::string>;
+
+constexpr double kSame = 0.51; ///< of 255: what rounding of points to floats may come to on an edge
+
+struct Pair {
+  const char* name;
+  std::string with, without;
+};
+
+void expectSame(const Pair& pair) {
+  SCOPED_TRACE(pair.name);
+  const Import given = page(pair.with), reference = page(pair.without);
+  EXPECT_EQ(given.placed, Texts());
+  EXPECT_EQ(reference.placed, Texts());
+  EXPECT_LE(worst(picture(given), picture(reference)), kSame);
+}
+
+std::string marker(const std::string& attributes, const std::string& inside) {
+  return "<marker id='m' " + attributes + ">" + inside + "</marker>";
+}
+const std::string kArrow = "<path d='M0 0L12 6L0 12Z' fill='#a00'/>";
+const std::string kBox = "markerUnits='userSpaceOnUse' markerWidth='12' markerHeight='12' refX='6' refY='6' ";
+/// The arrow with its middle at a point, turned.
+std::string arrowAt(int x, int y, double degrees) {
+  return "<g transform='translate(" + std::to_string(x) + " " + std::to_string(y) + ") rotate(" +
+         std::to_string(degrees) + ") translate(-6 -6)'>" + kArrow + "</g>";
+}
+const std::string kAngle = "<path d='M20 20H80V80' fill='none' stroke='#00a' stroke-width='4' ";
+
+TEST(SvgEqual, MarkersArePlacedAtVertices) {
+  const std::string line = kAngle + "/>";
+  const Pair pairs[] = {
+      {"all", marker(kBox, kArrow) + kAngle + "style='marker:url(#m)'/>",
+       line + arrowAt(20, 20, 0) + arrowAt(80, 20, 0) + arrowAt(80, 80, 0)},
+      {"auto: halfway between the directions",
+       marker(kBox + "orient='auto'", kArrow) + kAngle + "marker-mid='url(#m)'/>", line + arrowAt(80, 20, 45)},
+      {"auto at the ends",
+       marker(kBox + "orient='auto'", kArrow) + kAngle + "marker-start='url(#m)' marker-end='url(\"#m\")'/>",
+       line + arrowAt(20, 20, 0) + arrowAt(80, 80, 90)},
+      {"auto-start-reverse turns the first alone",
+       marker(kBox + "orient='auto-start-reverse'", kArrow) + kAngle + "style='marker:url(#m)'/>",
+       line + arrowAt(20, 20, 180) + arrowAt(80, 20, 45) + arrowAt(80, 80, 90)},
+      {"an angle with its unit", marker(kBox + "orient='0.25turn'", kArrow) + kAngle + "marker-start='url(#m)'/>",
+       line + arrowAt(20, 20, 90)},
+      {"in units of the stroke's width, from its box",
+       marker("viewBox='0 0 24 24' refX='center' refY='12' markerWidth='3' markerHeight='3'",
+              "<path d='M0 0L24 12L0 24Z' fill='#a00'/>") +
+           kAngle + "marker-end='url(#m)'/>",
+       line + arrowAt(80, 80, 0)},
+      {"clipped to its size",
+       marker(kBox, "<rect x='-9' y='-9' width='40' height='40' fill='#a00'/>") + kAngle + "marker-end='url(#m)'/>",
+       line + "<rect x='74' y='74' width='12' height='12' fill='#a00'/>"},
+      {"not clipped where its overflow is visible",
+       marker(kBox + "overflow='visible'", "<rect x='-4' y='-4' width='20' height='20' fill='#a00'/>") + kAngle +
+           "marker-end='url(#m)'/>",
+       line + "<rect x='70' y='70' width='20' height='20' fill='#a00'/>"},
+      {"in the colour of the stroke",
+       marker(kBox, "<path d='M0 0L12 6L0 12Z' fill='context-stroke' stroke='context-fill'/>") + kAngle +
+           "marker-mid='url(#m)'/>",
+       line + "<g transform='translate(74 14)'><path d='M0 0L12 6L0 12Z' fill='#00a'/></g>"},
+      {"below the stroke", marker(kBox, kArrow) + kAngle + "style='marker-start:url(#m);paint-order:markers'/>",
+       arrowAt(20, 20, 0) + line},
+      {"a contour that closes has its direction at both ends",
+       marker(kBox + "orient='auto'", kArrow) + "<path fill='none' marker-start='url(#m)' d='M20 20H80V80H20Z'/>",
+       arrowAt(20, 20, -45)},
+      {"arcs have no vertices inside",
+       marker(kBox, kArrow) + "<path fill='none' marker-mid='url(#m)' d='M20 50A30 30 0 1 1 50 80L20 80'/>",
+       arrowAt(50, 80, 0)},
+      {"segments without length go on as the one before",
+       marker(kBox + "orient='auto'", kArrow) + "<path fill='none' marker-end='url(#m)' d='M20 20V80V80'/>",
+       arrowAt(20, 80, 90)},
+      {"polygons and lines",
+       marker(kBox, kArrow) + "<g fill='none' marker-start='url(#m)'><polygon points='20 20 80 20 80 80'/>"
+                              "<line x1='50' y1='60' x2='9' y2='9'/></g>",
+       arrowAt(20, 20, 0) + arrowAt(50, 60, 0)},
+      {"its own opacity and clip path",
+       "<clipPath id='c'><rect width='12' height='6'/></clipPath>" +
+           marker(kBox + "opacity='0.5' clip-path='url(#c)'", "<rect width='12' height='12' fill='#a00'/>") + kAngle +
+           "marker-end='url(#m)'/>",
+       line + "<rect x='74' y='74' width='12' height='6' fill='#a00' opacity='.5'/>"},
+      {"other shapes have none",
+       marker(kBox, kArrow) + "<rect x='9' y='9' width='50' height='50' marker-mid='url(#m)'/>",
+       "<rect x='9' y='9' width='50' height='50'/>"},
+      {"none without a stroke's width",
+       marker("", kArrow) + "<path d='M9 9h50v50' stroke-width='0' marker-mid='url(#m)'/>", "<path d='M9 9h50v50'/>"},
+  };
+  for (const Pair& pair : pairs) expectSame(pair);
+}
+
+TEST(SvgEqual, WrongMarkersAreNamed) {
+  const auto said = [](const std::string& text) { return page(text).placed; };
+  EXPECT_EQ(said("<path d='M0 0h9v9' marker-end='url(#m)'/>"),
+            Texts{"test.svg:2:1: warning: <path> has the marker 'url(#m)', which is not there; it is not drawn"});
+  EXPECT_EQ(said("<g id='m'/><path d='M0 0h9v9' marker-end='url(#m)'/>"),
+            Texts{"test.svg:2:12: warning: <path> has the marker 'url(#m)', which is a <g>; it is not drawn"});
+  EXPECT_EQ(
+      said("<path d='M0 0h9v9' marker-end='url(a.svg#m)'/>"),
+      Texts{"test.svg:2:1: warning: <path> has the marker 'url(a.svg#m)', which is no <marker> of this file; it is "
+            "not drawn"});
+  EXPECT_EQ(said("<marker id='m'><path d='M0 0h2v2' marker-mid='url(#m)'/></marker><path d='M0 0h9v9' "
+                 "marker-end='url(#m)'/>"),
+            Texts{"test.svg:2:16: warning: <path> has the marker 'url(#m)', which contains itself; it is not drawn"});
+  EXPECT_EQ(said("<marker id='m' orient='up'/><path d='M0 0h9v9' marker-end='url(#m)'/>").size(), 1u);
+  // Each multiplies the next; the elements that may be visited bound them.
+  std::string bomb;
+  for (int i = 0; i < 12; ++i)
+    bomb += "<marker id='m" + std::to_string(i) + "' overflow='visible'><path d='M0 0h1h1h1h1h1h1h1h1h1' " +
+            "style='marker:url(#m" + std::to_string(i + 1) + ")'/></marker>";
+  vector::svg::ImportLimits limits;
+  limits.elements = 10'000;
+  const Import many = import("<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>" + bomb +
+                                 "<path d='M0 0h1h1' marker-mid='url(#m0)'/></svg>",
+                             limits);
+  ASSERT_FALSE(many.messages.empty());
+  EXPECT_EQ(many.messages.back(), "E line 1: more than 10000 elements; the rest is not drawn");
+}
+
+TEST(SvgEqual, PatternsAreCopies) {
+  const auto rects = [](int left, int top, int step, int count, const std::string& rest) {
+    std::string all;
+    for (int y = 0; y < count; ++y)
+      for (int x = 0; x < count; ++x)
+        all += "<rect x='" + std::to_string(left + x * step) + "' y='" + std::to_string(top + y * step) + "' " + rest +
+               "/>";
+    return all;
+  };
+  const std::string inUser = "<pattern id='p' patternUnits='userSpaceOnUse' width='20' height='20' ",
+                    dot = "><rect width='10' height='10' fill='#a00'/></pattern>",
+                    square = "<rect width='80' height='80' fill='url(#p)'/>";
+  const std::string dots = rects(0, 0, 20, 4, "width='10' height='10' fill='#a00'");
+  const Pair pairs[] = {
+      {"in user space", inUser + dot + square, dots},
+      {"from its corner", inUser + "x='5' y='-15'" + dot + "<rect x='5' y='5' width='80' height='80' fill='url(#p)'/>",
+       "<g transform='translate(5 5)'>" + dots + "</g>"},
+      {"by the box of what is painted", "<pattern id='p' width='25%' height='.25'" + dot + square, dots},
+      {"content by the box",
+       "<pattern id='p' width='.25' height='.25' patternContentUnits='objectBoundingBox'><rect "
+       "width='.125' height='.125' fill='#a00'/></pattern>" +
+           square,
+       dots},
+      {"with a viewBox", inUser + "viewBox='0 0 2 2'><rect width='1' height='1' fill='#a00'/></pattern>" + square,
+       dots},
+      {"with a transform",
+       "<pattern id='p' patternUnits='userSpaceOnUse' width='10' height='10' "
+       "patternTransform='scale(2)'><rect width='5' height='5' fill='#a00'/></pattern>" +
+           square,
+       dots},
+      {"by reference",
+       "<pattern id='q' width='20' height='20'" + dot + "<pattern id='p' href='#q' patternUnits='userSpaceOnUse'/>" +
+           square,
+       dots},
+      {"what reaches beyond a tile is clipped",
+       inUser + "><rect x='-5' y='-5' width='15' height='15' fill='#a00'/></pattern>" + square, dots},
+      {"fades as one", inUser + dot + "<rect width='80' height='80' fill='url(#p)' fill-opacity='.5'/>",
+       "<g opacity='.5'>" + dots + "</g>"},
+      {"groups of its own",
+       inUser +
+           "><g opacity='.5'><rect width='10' height='10' fill='#a00'/><rect width='5' "
+           "height='10' fill='#00a'/></g></pattern>" +
+           square,
+       "<g opacity='.5'>" + dots + rects(0, 0, 20, 4, "width='5' height='10' fill='#00a'") + "</g>"},
+      {"gradients move with it",
+       "<linearGradient id='g'><stop stop-color='red'/><stop offset='1' stop-color='blue'/>"
+       "</linearGradient>" +
+           inUser + "><rect width='10' height='10' fill='url(#g)'/></pattern>" + square,
+       "<linearGradient id='g'><stop stop-color='red'/><stop offset='1' stop-color='blue'/></linearGradient>" +
+           rects(0, 0, 20, 4, "width='10' height='10' fill='url(#g)'")},
+      {"strokes", inUser + dot + "<path d='M0 10H80' stroke='url(#p)' stroke-width='20'/>",
+       "<rect width='10' height='10' fill='#a00'/><rect x='20' width='10' height='10' fill='#a00'/><rect x='40' "
+       "width='10' height='10' fill='#a00'/><rect x='60' width='10' height='10' fill='#a00'/>"},
+      {"inherits where it stands, not where it is used",
+       "<g fill='#a00'>" + inUser + "><rect width='10' height='10'/></pattern></g><g fill='#00f'>" + square + "</g>",
+       dots},
+  };
+  for (const Pair& pair : pairs) expectSame(pair);
+  const auto said = [](const std::string& text) { return page(text).messages; };
+  EXPECT_EQ(said("<pattern id='p' width='1' height='1'><rect width='9' height='9' fill='url(#p) red'/></pattern>"
+                 "<rect width='9' height='9' fill='url(#p)'/>"),
+            Texts{"W line 2: <rect> fill refers to a pattern that contains itself; its fallback is used"});
+  EXPECT_EQ(said(inUser + "patternTransform='scale(.001)'" + dot + square),
+            Texts{"W line 2: <rect> is painted with a pattern of more than 65536 tiles, which is not supported; it is "
+                  "not painted"});
+  EXPECT_EQ(said(inUser + "overflow='visible'" + dot + square),
+            Texts{"W line 2: overflow 'visible' is not supported: <pattern> is clipped to its tiles"});
+  EXPECT_EQ(said("<pattern id='p'><rect/></pattern>" + square),
+            Texts{"W line 2: <rect> fill refers to a pattern without extent; it is not painted"});
+}
+
+/// A font whose letters are half an em wide and a square of four tenths each, which stands on the baseline.
+GpgpResult GPGP_CALL shapeSquares(void*, const GpgpSvgText* text, GpgpSvgGlyphFn glyphFn, void* glyphData) {
+  static const GpgpPathVerb verbs[] = {GPGP_PATH_MOVE, GPGP_PATH_LINE, GPGP_PATH_LINE, GPGP_PATH_LINE, GPGP_PATH_CLOSE};
+  static const float points[] = {0, 0, 0.4f, 0, 0.4f, -0.4f, 0, -0.4f};
+  GpgpPath square{};
+  square.verbs = verbs, square.verbCount = 5;
+  square.points = points, square.pointCount = 4;
+  float x = 0;
+  for (uint32_t s = 0; s < text->spanCount; ++s)
+    for (uint32_t i = text->spans[s].begin; i < text->spans[s].end; ++i) {
+      GpgpSvgGlyph glyph{};
+      glyph.cluster = i;
+      glyph.x = x;
+      glyph.size = text->spans[s].size;
+      glyph.advance = glyph.size / 2 + text->spans[s].letterSpacing;
+      glyph.paths = &square;
+      glyph.pathCount = text->text[i] != ' ';
+      glyph.ascent = 0.8f, glyph.descent = 0.2f, glyph.xHeight = 0.4f;
+      glyph.underlinePosition = 0.1f, glyph.strikePosition = -0.2f;
+      glyph.underlineThickness = glyph.strikeThickness = 0.1f;
+      x += glyph.advance;
+      glyphFn(glyphData, &glyph);
+    }
+  return GPGP_SUCCESS;
+}
+
+/// A page whose text is in that font.
+Import written(const std::string& inside) {
+  const std::string text =
+      "<svg xmlns='http://www.w3.org/2000/svg' width='100' height='100' font-size='20'>\n" + inside + "</svg>";
+  Import result;
+  const auto listen = [](void* user, const GpgpMessage* m) {
+    static_cast<Import*>(user)->placed.push_back(test::placed(*m));
+  };
+  vector::svg::Reporter reporter(listen, &result, "test.svg");
+  auto drawing = vector::svg::importSvg(std::as_bytes(std::span(text.data(), text.size())), reporter, {}, {}, {},
+                                        nullptr, {shapeSquares, nullptr});
+  if (drawing) result.drawing = std::move(*drawing);
+  return result;
+}
+
+TEST(SvgEqual, TextIsOutlines) {
+  const auto at = [](double x, double y, const std::string& rest = "", double side = 8) {
+    return "<rect x='" + std::to_string(x) + "' y='" + std::to_string(y - side) + "' width='" + std::to_string(side) +
+           "' height='" + std::to_string(side) + "' " + rest + "/>";
+  };
+  const Pair pairs[] = {
+      {"in a row", "<text x='10' y='40'>ab d</text>", at(10, 40) + at(20, 40) + at(40, 40)},
+      {"white space collapses", "<text x='10' y='40'>\n a \n b\n</text>", at(10, 40) + at(30, 40)},
+      {"or is kept", "<text x='10' y='40' xml:space='preserve'> a  b</text>", at(20, 40) + at(50, 40)},
+      {"between elements too", "<text x='10' y='40'><tspan>a</tspan> <tspan>b</tspan></text>", at(10, 40) + at(30, 40)},
+      {"in the middle", "<text x='50' y='40' text-anchor='middle'>abcd</text>",
+       at(30, 40) + at(40, 40) + at(50, 40) + at(60, 40)},
+      {"at the end", "<text x='50' y='40' text-anchor='end'>ab</text>", at(30, 40) + at(40, 40)},
+      {"each at its place", "<text x='10 40' y='40 60'>abc</text>", at(10, 40) + at(40, 60) + at(50, 60)},
+      {"moved", "<text x='10' y='40' dx='5 5' dy='0 10'>abc</text>", at(15, 40) + at(30, 50) + at(40, 50)},
+      {"what is further in counts", "<text x='10 20 30' y='40'>a<tspan x='70'>b</tspan>c</text>",
+       at(10, 40) + at(70, 40) + at(30, 40)},
+      {"turned", "<text x='50' y='50' rotate='90'>a</text>", at(0, 0, "transform='translate(50 50) rotate(90)'")},
+      {"styled in parts",
+       "<text x='10' y='40' fill='#a00'>a<tspan fill='#0a0' font-size='40'>b</tspan><tspan "
+       "style='display:none'>c</tspan>"
+       "d</text>",
+       at(10, 40, "fill='#a00'") + at(20, 40, "fill='#0a0'", 16) + at(40, 40, "fill='#a00'")},
+      {"spacing", "<text x='10' y='40' letter-spacing='5' word-spacing='10'>a b</text>", at(10, 40) + at(50, 40)},
+      {"as long as it says", "<text x='10' y='40' textLength='60'>abc</text>", at(10, 40) + at(35, 40) + at(60, 40)},
+      {"and stretched", "<text x='10' y='40' textLength='40' lengthAdjust='spacingAndGlyphs'>ab</text>",
+       "<path d='M10 32h16v8h-16zM30 32h16v8h-16z'/>"},
+      {"baselines",
+       "<text y='40'><tspan x='10' dominant-baseline='middle'>a</tspan><tspan x='30' "
+       "alignment-baseline='text-before-edge'>b</tspan><tspan x='60' baseline-shift='10'>c</tspan></text>",
+       at(10, 44) + at(30, 56) + at(60, 30)},
+      {"lines",
+       "<text x='10' y='40' text-decoration='underline' fill='#a00'>ab<tspan text-decoration='line-through' "
+       "fill='#00a'>c</tspan></text>",
+       at(10, 40, "fill='#a00'") + at(20, 40, "fill='#a00'") +
+           "<rect x='10' y='41' width='30' height='2' fill='#a00'/>" + at(30, 40, "fill='#00a'") +
+           "<rect x='30' y='35' width='10' height='2' fill='#00a'/>"},
+      {"along a path",
+       "<path id='p' d='M20 10V90' fill='none'/><text><textPath href='#p' startOffset='10'>ab</textPath>"
+       "</text>",
+       at(0, 0, "transform='translate(20 20) rotate(90)'") + at(0, 0, "transform='translate(20 30) rotate(90)'")},
+      {"gradients of the whole text's box",
+       "<linearGradient id='g'><stop stop-color='red'/><stop offset='1' stop-color='blue'/></linearGradient><text "
+       "x='10' "
+       "y='40' fill='url(#g)'>abcd</text>",
+       "<linearGradient id='g' gradientUnits='userSpaceOnUse' x1='10' x2='50'><stop stop-color='red'/><stop offset='1' "
+       "stop-color='blue'/></linearGradient><g fill='url(#g)'>" +
+           at(10, 40) + at(20, 40) + at(30, 40) + at(40, 40) + "</g>"},
+      {"as a clip",
+       "<clipPath id='c'><text x='10' y='40'>ab</text></clipPath><rect width='100' height='100' "
+       "clip-path='url(#c)'/>",
+       at(10, 40) + at(20, 40)},
+  };
+  for (const Pair& pair : pairs) {
+    SCOPED_TRACE(pair.name);
+    const Import given = written(pair.with), reference = page(pair.without);
+    EXPECT_EQ(given.placed, Texts());
+    EXPECT_LE(worst(picture(given), picture(reference)), kSame);
+  }
+  const auto said = [](const std::string& text) { return written(text).placed; };
+  EXPECT_EQ(said("<text><textPath href='#p'>a</textPath></text>"),
+            Texts{"test.svg:2:7: warning: <textPath> refers to '#p', which is no shape of this file; it is not drawn"});
+  EXPECT_EQ(said("<text writing-mode='tb'>a</text>"),
+            Texts{"test.svg:2:1: warning: writing-mode is not supported: <text> is drawn without it"});
+  EXPECT_EQ(said("<text>a<tref href='#a'/></text>"), Texts{"test.svg:2:8: warning: <tref> is not supported"});
+  EXPECT_EQ(said("<text x='1 a'>ab</text>"), Texts{"test.svg:2:10: error: <text> has x '1 a', which is no length"});
+}
+
+TEST(SvgEqual, SelectorsChooseElements) {
+  const std::string four = "<g id='g'><rect width='20' height='20'/><rect x='20' width='20' height='20' class='a b'/>"
+                           "<circle cx='50' cy='10' r='10' data-x='Up down'/><rect x='60' width='20' height='20' "
+                           "id='1:a'/></g>";
+  const auto filled = [](int which) { // by bits
+    const char* shapes[] = {"<rect width='20' height='20'", "<rect x='20' width='20' height='20'",
+                            "<circle cx='50' cy='10' r='10'", "<rect x='60' width='20' height='20'"};
+    std::string all;
+    for (int i = 0; i < 4; ++i) all += std::string(shapes[i]) + (which >> i & 1 ? " fill='#a00'/>" : "/>");
+    return all;
+  };
+  const struct {
+    const char* selector;
+    int which;
+  } rows[] = {{"g > :first-child", 1},
+              {"g > :last-child", 8},
+              {"rect:nth-child(2)", 2},
+              {"g > :nth-child(odd)", 5},
+              {"g > :nth-child( 2n )", 10},
+              {"g > :nth-child(-n + 2)", 3},
+              {"g > :nth-last-child(2)", 4},
+              {"rect:nth-of-type(3)", 8},
+              {"g > :first-of-type", 5},
+              {"circle:only-of-type", 4},
+              {"rect:only-child", 0},
+              {"rect:not(.a)", 9},
+              {"g > *:not(rect, :nth-child(1))", 4},
+              {":is(circle, .b)", 6},
+              {"g :where(circle)", 4},
+              {"[data-x='up DOWN' i]", 4},
+              {"[data-x~=down]", 4},
+              {"[data-x|=Up]", 0},
+              {"#\\31 \\:a", 8},
+              {"rect + rect", 2},
+              {"rect ~ circle", 4},
+              {"*|circle", 4},
+              {"rect:hover, circle:focus", 0},
+              {"g:root > rect", 0},
+              {"rect:empty", 11},
+              {"a:link rect", 0}};
+  for (const auto& row : rows)
+    expectSame(
+        {row.selector, "<style>" + std::string(row.selector) + " {fill:#a00}</style>" + four, filled(row.which)});
+  // Which of two counts.
+  expectSame(
+      {"not counts as what is in it", "<style>rect:not(#z) {fill:#a00} .a.b {fill:#0f0}</style>" + four, filled(11)});
+  expectSame({"where counts nothing",
+              "<style>:where(#g) rect {fill:#a00} rect {fill:#a00} rect.a {fill:#000}</style>" + four, filled(9)});
+}
+
+TEST(SvgEqual, ValuesAreCalculated) {
+  const std::string square = "<rect x='10' y='10' width='40' height='40' fill='#a00'/>";
+  const Pair pairs[] = {
+      {"a variable", "<g style='--c: #a00'><rect x='10' y='10' width='40' height='40' fill='var(--c)'/></g>", square},
+      {"the fallback", "<rect x='10' y='10' width='40' height='40' style='fill:var(--c, var(--d, #a00))'/>", square},
+      {"a variable of variables",
+       "<style>:root {--r: 170; --c: rgb(var(--r), 0, 0)} g {--r: 0}</style><g><rect x='10' y='10' width='40' "
+       "height='40' style='fill:var(--c)'/></g>",
+       square},
+      {"names have their case",
+       "<g style='--c:#00f;--C:#a00'><rect x='10' y='10' width='40' height='40' "
+       "style='fill:var(--C)'/></g>",
+       square},
+      {"in a length",
+       "<g style='--w:40px'><rect x='10' y='10' width='var(--w)' style='height:var(--w)' fill='#a00'/></g>", square},
+      {"calc", "<rect x='calc(5px * 2)' y='10' width='calc(100% - 60px)' height='calc((1em + 4px) * 2)' fill='#a00'/>",
+       square},
+      {"min, max and clamp",
+       "<rect x='min(10px, 90%)' y='max(10px, 1%)' width='clamp(40px, 1em, 90px)' height='40' fill='#a00'/>", square},
+      {"parts of the page",
+       "<svg viewBox='0 0 100 100'><rect x='10vw' y='10vh' width='40vmin' height='40vmax' "
+       "fill='#a00'/></svg>",
+       square},
+      {"in transforms",
+       "<rect width='40' height='40' fill='#a00' style='transform:translate(calc(4px + 6%), "
+       "min(10px, 20px))'/>",
+       square},
+      {"in opacity", "<rect x='10' y='10' width='40' height='40' fill='#a00' opacity='calc(1 / 2)'/>",
+       "<rect x='10' y='10' width='40' height='40' fill='#a00' opacity='.5'/>"},
+      {"percentages of a gradient's box",
+       "<linearGradient id='g' style='transform:translate(50%)'><stop stop-color='red'/><stop offset='1' "
+       "stop-color='blue'/></linearGradient><rect x='10' y='10' width='40' height='40' fill='url(#g)'/>",
+       "<linearGradient id='g' x1='.5' x2='1.5'><stop stop-color='red'/><stop offset='1' "
+       "stop-color='blue'/></linearGradient><rect x='10' y='10' width='40' height='40' fill='url(#g)'/>"},
+  };
+  for (const Pair& pair : pairs) expectSame(pair);
+  const auto said = [](const std::string& text) { return page(text).messages; };
+  EXPECT_EQ(said("<rect width='9' height='9' fill='var(--none)'/>"),
+            Texts{"W line 2: <rect> has fill 'var(--none)', which is a variable without a value; it is as if it were "
+                  "unset"});
+  EXPECT_EQ(said("<g style='--a:var(--b);--b:var(--a)'><rect width='9' height='9' fill='var(--a)'/></g>").size(), 1u);
+  EXPECT_EQ(said("<rect width='calc(1px + 2)' height='9'/>").size(), 1u);
+  EXPECT_EQ(said("<rect width='calc(1px+2px)' height='9'/>").size(), 1u);
+  // Each doubles the one before.
+  std::string bomb = "--a0:xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx;";
+  for (int i = 1; i < 60; ++i) {
+    const std::string before = "var(--a" + std::to_string(i - 1) + ")";
+    bomb += "--a" + std::to_string(i) + ":" + before + before + ";";
+  }
+  EXPECT_EQ(said("<g style='" + bomb + "'><rect width='9' height='9' fill='var(--a59)'/></g>").size(), 1u);
+}
+
+} // namespace
