@@ -1,7 +1,7 @@
 // The patch recorder: drawings and texts as geometry inside the engine's render pass.
 //
-// One instanced draw. The host writes views and placements (shaders/vector/in_pass/recording.h); each path is a quad,
-// found by its number among all placements' quads. There is no pass before it, and nothing is kept.
+// One instanced draw. The host writes views and placements (shaders/vector/in_pass/recording.h); paths and their cells
+// are quads, found by their number among all placements' quads. There is no pass before it, and nothing is kept.
 #pragma once
 #include "core/recorder.h"
 #include "vector/raster/gather.h"
