@@ -32,6 +32,10 @@ enum class CubicType { serpentine, cusp, loop };
 void appendForms(const CurveRecord& curve, std::pmr::vector<FormCurve>& forms,
                  std::pmr::vector<CubicType>* types = nullptr);
 
+/// Two arcs of one ellipse, the second from the first one's end on, as one; nothing where they are not that, or where
+/// the whole would turn.
+std::optional<FormCurve> joinArcs(const FormCurve& first, const FormCurve& second);
+
 /// A patch of a path: rows, and curves by number, those on the left first, each side from top to bottom.
 struct JoinedPatch {
   float top = 0, bottom = 0;
@@ -39,8 +43,8 @@ struct JoinedPatch {
   uint32_t curveCount = 0, lefts = 0;
 };
 
-/// What a path's slabs become: curves that stand once in a table, and patches. Slabs that lie above each other are
-/// joined as long as no more than `maxCurves` curves bound them.
+/// What a path's slabs become: curves that stand once in a table, arcs of an ellipse as long as they can be, and
+/// patches. Slabs that lie above each other are joined as long as no more than `maxCurves` curves bound them.
 struct JoinedPath {
   explicit JoinedPath(std::pmr::memory_resource* memory) : curves(memory), patches(memory) {}
   std::pmr::vector<FormCurve> curves;
