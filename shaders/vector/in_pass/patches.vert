@@ -39,7 +39,8 @@ vec2 largestSpread(PatchView view, vec4 over, vec2 half_) {
 
 void main() {
   gl_Position = vec4(0, 0, 0, 1); // a point, which draws nothing
-  const uint number = gl_InstanceIndex;
+  // One strip of all quads, six vertices each: the first and the last come twice, which leaves nothing between quads.
+  const uint number = gl_VertexIndex / 6, vertex = uint(clamp(int(gl_VertexIndex % 6) - 1, 0, 3));
   uint low = 0, high = header.placements; // the last placement that begins at or before the quad
   while (high - low > 1) {
     const uint half_ = (low + high) / 2;
@@ -83,14 +84,14 @@ void main() {
     shown += vec4(-grown.xy * pixel, grown.zw * pixel);
     shown = vec4(max(shown.xy, center - seen), min(shown.zw, center + seen));
     if (!(shown.x < shown.z && shown.y < shown.w)) return;
-    const vec2 at = vec2((gl_VertexIndex & 1) != 0 ? shown.z : shown.x, (gl_VertexIndex & 2) != 0 ? shown.w : shown.y);
+    const vec2 at = vec2((vertex & 1) != 0 ? shown.z : shown.x, (vertex & 2) != 0 ? shown.w : shown.y);
     gl_Position = view.column0 * at.x + view.column1 * at.y + view.column2;
   } else {
     // Corners in a round, then the three around this one. Edges arrive at the corner behind them.
     const vec3 corners[4] = {clipOf(view, shown.xy), clipOf(view, shown.zy), clipOf(view, shown.zw),
                              clipOf(view, shown.xw)};
     const float edges[4] = {grown.y, grown.z, grown.w, grown.x};
-    const uint corner = gl_VertexIndex ^ (gl_VertexIndex >> 1); // 0, 1, 3, 2: a strip
+    const uint corner = vertex ^ (vertex >> 1); // 0, 1, 3, 2: a strip
     const vec3 before = corners[(corner + 3) & 3], at = corners[corner], after = corners[(corner + 1) & 3];
     const float turn = volume(before, at, after), side = turn < 0 ? -1.0 : 1.0;
     if (turn == 0) return; // seen edge on

@@ -142,7 +142,8 @@ Result<void> PatchRecorder::begin(const GpgpPatchDrawInfo& info) {
   if (info.target->samples > VK_SAMPLE_COUNT_1_BIT && !context.device.limits.standardSampleLocations)
     return makeError(GPGP_ERROR_UNSUPPORTED, "this device has no standardSampleLocations, which several samples need");
   bound_ = {};
-  slots_ = views_ = placements_ = quads_ = glyphs_ = 0;
+  slots_ = views_ = placements_ = glyphs_ = 0;
+  quads_ = 0;
   place_ = constants();
   if (!place_)
     return makeError(GPGP_ERROR_TOO_MANY_RECORDINGS,
@@ -189,7 +190,7 @@ Result<void> PatchRecorder::add(const GpgpPatchDrawInfo& info, uint32_t index, c
   ++views_;
   const size_t placements = sizeof(PatchHeader) + size_t(maxItems_) * 2 * sizeof(PatchView);
   const auto put = [&](PatchPlacement placement, const PatchQuads& quads, bool coarse) {
-    placement.firstQuad = quads_;
+    placement.firstQuad = static_cast<uint32_t>(quads_); // finish() checks that it fits
     if (coarse) placement.slot |= shader::kPatchCoarse;
     std::memcpy(place_ + placements + size_t(placements_++) * sizeof placement, &placement, sizeof placement);
     quads_ += coarse ? quads.paths : quads.all;
@@ -237,6 +238,10 @@ Result<void> PatchRecorder::add(const GpgpPatchDrawInfo& info, uint32_t index, c
 }
 
 Result<void> PatchRecorder::finish(VkCommandBuffer commandBuffer, const GpgpPatchDrawInfo& info) {
+  constexpr uint64_t kQuadVertices = 6; // as patches.vert takes them
+  if (quads_ > UINT32_MAX / kQuadVertices)
+    return makeError(GPGP_ERROR_UNSUPPORTED, "%llu quads are more than one draw can show",
+                     static_cast<unsigned long long>(quads_));
   PatchHeader header{};
   header.placements = placements_;
   header.firstPlacement = maxItems_ * 2 * shader::kPatchViewSize;
@@ -251,8 +256,7 @@ Result<void> PatchRecorder::finish(VkCommandBuffer commandBuffer, const GpgpPatc
     r.bindings[i].ownSize = bound_[i]->size();
   }
   r.target = info.target;
-  r.vertexCount = 4;
-  r.instanceCount = quads_;
+  r.vertexCount = static_cast<uint32_t>(kQuadVertices * quads_);
   r.form = slots_ > 1 ? kSeveralDrawings : kOneDrawing;
   return recordDraw(r);
 }
