@@ -97,7 +97,7 @@ private:
 
 } // namespace
 
-core::Result<void> checkPatches(std::span<const uvec4> words, uint32_t paths) {
+core::Result<void> checkPatches(std::span<const uvec4> words, uint32_t paths, std::pmr::memory_resource* memory) {
   if (words.size() < PatchReader::kPatchHeader)
     return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: its patches are cut off");
   const uvec4& head = words[0];
@@ -110,7 +110,7 @@ core::Result<void> checkPatches(std::span<const uvec4> words, uint32_t paths) {
       PatchReader::kPatchHeader + uint64_t(paths) * PatchReader::kPatchPathSize > words.size())
     return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: its patches are not those of its paths");
   Checker checker(words);
-  std::pmr::vector<uvec4> quads;
+  std::pmr::vector<uvec4> quads(memory);
   float largest = 0;
   for (uint32_t i = 0; i < paths; ++i) {
     if (!checker.path(i))

@@ -84,6 +84,7 @@ core::Result<Patches> makePatches(const Drawing& drawing, std::pmr::memory_resou
 float appendQuads(std::span<const shader::uvec4> words, uint32_t path, std::pmr::vector<shader::uvec4>& quads);
 
 /// Checks everything that a shader would trust, in words from a file that has so many paths that paint. INVALID_DATA.
-core::Result<void> checkPatches(std::span<const shader::uvec4> words, uint32_t paths);
+core::Result<void> checkPatches(std::span<const shader::uvec4> words, uint32_t paths,
+                                std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 } // namespace gpgp::vector
