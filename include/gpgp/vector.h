@@ -717,7 +717,7 @@ typedef struct GpgpPatchDrawInfo {
 } GpgpPatchDrawInfo;
 #define GPGP_PATCH_DRAW_INFO_INIT GPGP_INIT(GpgpPatchDrawInfo, GPGP_STRUCTURE_PATCH_DRAW_INFO)
 
-/** Draws the items inside the engine's render pass, in one instanced draw with premultiplied blending (ONE,
+/** Draws the items inside the engine's render pass, in one draw with premultiplied blending (ONE,
  *  ONE_MINUS_SRC_ALPHA). Nothing is recorded before the pass, and nothing is kept. Edges are exact at any
  *  magnification.
  *

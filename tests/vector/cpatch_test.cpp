@@ -203,8 +203,8 @@ TestPath disc(float x, float y, float r) {
 TEST(CPatches, CirclesAreCircles) {
   const TestPath path = disc(50, 40, 30);
   const vector::Patches patches = patchesOf(path.view());
-  EXPECT_EQ(patches.curves, 12u); // arcs come in pieces of 30 degrees at this tolerance
-  EXPECT_EQ(patches.patches, 3u);
+  EXPECT_EQ(patches.curves, 4u); // that do not turn
+  EXPECT_EQ(patches.patches, 1u);
   PatchReader reader(patches.words);
   const PatchReader::GpgpPatchPath record = reader.gpgpLoadPath(0, 0, 0);
   std::mt19937 random(3);

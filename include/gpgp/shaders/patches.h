@@ -39,8 +39,11 @@
 #ifndef GPGP_PATCH_CONST
 #define GPGP_PATCH_CONST GPGP_CONST
 #endif
+#ifndef GPGP_PATCH_COUNT
+#define GPGP_PATCH_COUNT(what) // tests count the work by it
+#endif
 
-GPGP_PATCH_CONST uint kPatchHeader = 1u;     // uvec4: paths, version, -, size; then as many paths
+GPGP_PATCH_CONST uint kPatchHeader = 2u; // uvec4: paths, version, left out, size; quads' place and number, least spread
 GPGP_PATCH_CONST uint kPatchPathSize = 6u;   // uvec4
 GPGP_PATCH_CONST uint kPatchForeground = 1u; // flag: the path takes the text's colour
 GPGP_PATCH_CONST uint kPatchCurveKind = 30u; // bits of a curve's number: its place, and from here on its kind
@@ -49,7 +52,7 @@ GPGP_PATCH_CONST uint kPatchLine = 0u;
 GPGP_PATCH_CONST uint kPatchConic = 1u;
 GPGP_PATCH_CONST uint kPatchCubic = 2u;
 GPGP_PATCH_CONST uint kPatchSolid = 0xffffffffu; // count of a cell that is inside as a whole
-GPGP_PATCH_CONST uint kPatchFewCells = 4u;       // along an axis: pixels that meet more are summed from a table
+GPGP_PATCH_CONST uint kPatchFewCells = 5u;       // along an axis: pixels that meet more are summed from a table
 
 // A path of a drawing, as it lies in the buffer. Places count from the beginning of the drawing.
 struct GpgpPatchPath {
@@ -60,6 +63,7 @@ struct GpgpPatchPath {
   uint flags;
   uint columns, rows;                // of cells
   uint cells, patches, curves, sums; // sums: 0 where there are few cells
+  float smallest;                    // pixels along a cell's sides, from which on cells are drawn; 0: never
 };
 
 // A curve of the table: start, from the origin; end and controls, from the start; weight of a conic.
@@ -91,12 +95,13 @@ GPGP_FN GpgpPatchPath gpgpLoadPath(uint slot, uint drawing, uint index) {
   path.patches = drawing + place.y;
   path.curves = drawing + place.z;
   path.sums = place.w == 0u ? 0u : drawing + place.w;
+  path.smallest = GPGP_PATCH_FLOAT(slot, first + 5u).x;
   return path;
 }
 
-GPGP_FN GpgpPatchCurve gpgpLoadCurve(uint slot, uint curves, uint number, vec2 origin) {
-  const uint place = curves + (number & kPatchCurvePlace);
-  const vec4 ends = GPGP_PATCH_FLOAT(slot, place);
+// A curve's ends, which suffice to tell whether it comes near; a line has nothing else.
+GPGP_FN GpgpPatchCurve gpgpLoadEnds(uint slot, uint curves, uint number, vec2 origin) {
+  const vec4 ends = GPGP_PATCH_FLOAT(slot, curves + (number & kPatchCurvePlace));
   GpgpPatchCurve c;
   c.start = vec2(ends.x - origin.x, ends.y - origin.y);
   c.end = vec2(ends.z - ends.x, ends.w - ends.y);
@@ -104,13 +109,43 @@ GPGP_FN GpgpPatchCurve gpgpLoadCurve(uint slot, uint curves, uint number, vec2 o
   c.control = c.end;
   c.control2 = c.end;
   c.weight = 0.0f;
-  if ((number >> kPatchCurveKind) != kPatchLine) {
-    const vec4 controls = GPGP_PATCH_FLOAT(slot, place + 1u);
-    c.control = vec2(controls.x, controls.y);
-    c.control2 = vec2(controls.z, controls.w);
-    c.weight = controls.z; // of a conic
-  }
   return c;
+}
+GPGP_FN GpgpPatchCurve gpgpLoadControls(uint slot, uint curves, uint number, GpgpPatchCurve ends) {
+  GpgpPatchCurve c = ends;
+  const vec4 controls = GPGP_PATCH_FLOAT(slot, curves + (number & kPatchCurvePlace) + 1u);
+  c.control = vec2(controls.x, controls.y);
+  c.control2 = vec2(controls.z, controls.w);
+  c.weight = controls.z; // of a conic
+  return c;
+}
+GPGP_FN GpgpPatchCurve gpgpLoadCurve(uint slot, uint curves, uint number, vec2 origin) {
+  const GpgpPatchCurve ends = gpgpLoadEnds(slot, curves, number, origin);
+  if ((number >> kPatchCurveKind) == kPatchLine) return ends;
+  return gpgpLoadControls(slot, curves, number, ends);
+}
+
+// The column and the row of cells in which a point lies, counted from the origin: the first or last one where the point
+// lies beside the box. A point has one cell, whoever asks.
+GPGP_FN uint gpgpColumnAt(GpgpPatchPath path, vec2 origin, float x) {
+  GPGP_PRECISE float column = ((origin.x - path.box.x) + x) * path.cell.z;
+  return uint(clamp(column, 0.0f, float(path.columns - 1u)));
+}
+GPGP_FN uint gpgpRowAt(GpgpPatchPath path, vec2 origin, float y) {
+  GPGP_PRECISE float row = ((origin.y - path.box.y) + y) * path.cell.w;
+  return uint(clamp(row, 0.0f, float(path.rows - 1u)));
+}
+// A cell's first patch, from path.patches on, and how many it has; kPatchSolid: it is inside as a whole.
+GPGP_FN uint gpgpCellCount(uint slot, GpgpPatchPath path, uint column, uint row, GPGP_OUT(uint) first) {
+  const uint cell = row * path.columns + column;
+  const uvec4 pair = GPGP_PATCH_LOAD(slot, path.cells + cell / 2u);
+  first = path.patches + ((cell & 1u) != 0u ? pair.z : pair.x);
+  return (cell & 1u) != 0u ? pair.w : pair.y;
+}
+// The number of a patch's curve k.
+GPGP_FN uint gpgpCurveOf(uint slot, uint place, uint k) {
+  const uvec4 four = GPGP_PATCH_LOAD(slot, place + 1u + k / 4u);
+  return (k & 2u) == 0u ? ((k & 1u) == 0u ? four.x : four.y) : ((k & 1u) == 0u ? four.z : four.w);
 }
 
 // ---------------------------------------------------------------- samples
@@ -153,22 +188,16 @@ GPGP_FN bool gpgpRightOf(uint slot, uint curves, uint number, GpgpPatchCurve c, 
 GPGP_FN uint gpgpPatchesAt(uint slot, GpgpPatchPath path, vec2 origin, vec2 at) {
   const float x = at.x + origin.x, y = at.y + origin.y;
   if (x < path.box.x || x > path.box.z || y < path.box.y || y > path.box.w) return 0u;
-  const float column = ((origin.x - path.box.x) + at.x) * path.cell.z;
-  const float row = ((origin.y - path.box.y) + at.y) * path.cell.w;
-  const uint cell = uint(clamp(row, 0.0f, float(path.rows - 1u))) * path.columns +
-                    uint(clamp(column, 0.0f, float(path.columns - 1u)));
-  const uvec4 pair = GPGP_PATCH_LOAD(slot, path.cells + cell / 2u);
-  const uint first = (cell & 1u) != 0u ? pair.z : pair.x, count = (cell & 1u) != 0u ? pair.w : pair.y;
+  uint place = 0u;
+  const uint count = gpgpCellCount(slot, path, gpgpColumnAt(path, origin, at.x), gpgpRowAt(path, origin, at.y), place);
   if (count == kPatchSolid) return 1u;
   uint found = 0u;
-  uint place = path.patches + first;
   for (uint i = 0u; i < count; ++i) {
     const uvec4 head = GPGP_PATCH_LOAD(slot, place);
     const uint curveCount = head.z, lefts = head.w;
     bool inside = at.y >= uintBitsToFloat(head.x) - origin.y && at.y < uintBitsToFloat(head.y) - origin.y;
     for (uint k = 0u; k < curveCount && inside; ++k) {
-      const uvec4 four = GPGP_PATCH_LOAD(slot, place + 1u + k / 4u);
-      const uint number = (k & 2u) == 0u ? ((k & 1u) == 0u ? four.x : four.y) : ((k & 1u) == 0u ? four.z : four.w);
+      const uint number = gpgpCurveOf(slot, place, k);
       const GpgpPatchCurve c = gpgpLoadCurve(slot, path.curves, number, origin);
       const vec2 q = vec2(at.x - c.start.x, at.y - c.start.y);
       if (at.y >= c.start.y && at.y < c.bottom) inside = gpgpRightOf(slot, path.curves, number, c, q) == (k < lefts);
@@ -188,13 +217,15 @@ GPGP_FN float gpgpConicAt(float b, float end, float weight, float value) {
   const float above = p >= 0.0f ? v : root - p, below = p >= 0.0f ? p + root : end - v;
   return above + below > 0.0f ? above / (above + below) : 0.0f;
 }
-GPGP_FN float gpgpCubicAt(float b, float c, float end, float value) {
+// near_: how far from the value is near enough.
+GPGP_FN float gpgpCubicAt(float b, float c, float end, float value, float near_) {
   const float v = clamp(value, 0.0f, end);
   float t = gpgpConicAt(clamp(0.75f * (b + c) - 0.25f * end, 0.0f, end), end, 1.0f, v);
   float low = 0.0f, high = 1.0f;
   for (uint i = 0u; i < 5u; ++i) { // Newton's steps, kept between what is known to be below and above
     const float u = 1.0f - t;
     const float f = ((3.0f * u * u * b + 3.0f * u * t * c) + t * t * end) * t - v;
+    if (abs(f) <= near_) break;
     const float slope = 3.0f * (u * u * b + 2.0f * u * t * (c - b) + t * t * (end - c));
     if (f < 0.0f)
       low = t;
@@ -202,6 +233,7 @@ GPGP_FN float gpgpCubicAt(float b, float c, float end, float value) {
       high = t;
     const float next = slope > 0.0f ? t - f / slope : -1.0f;
     t = next >= low && next <= high ? next : 0.5f * (low + high);
+    GPGP_PATCH_COUNT(newton)
   }
   return t;
 }
@@ -215,30 +247,56 @@ GPGP_FN vec2 gpgpCurvePoint(bool conic, GpgpPatchCurve c, float t) {
   const float b = 3.0f * u * u * t, d = 3.0f * u * t * t, e = t * t * t;
   return vec2(b * c.control.x + d * c.control2.x + e * c.end.x, b * c.control.y + d * c.control2.y + e * c.end.y);
 }
-GPGP_FN float gpgpCurveAtY(bool conic, GpgpPatchCurve c, float y) {
-  return conic ? gpgpConicAt(c.control.y, c.end.y, c.weight, y) : gpgpCubicAt(c.control.y, c.control2.y, c.end.y, y);
+GPGP_FN float gpgpCurveAtY(bool conic, GpgpPatchCurve c, float y, float near_) {
+  return conic ? gpgpConicAt(c.control.y, c.end.y, c.weight, y)
+               : gpgpCubicAt(c.control.y, c.control2.y, c.end.y, y, near_);
 }
-GPGP_FN float gpgpCurveAtX(bool conic, GpgpPatchCurve c, float x) {
+GPGP_FN float gpgpCurveAtX(bool conic, GpgpPatchCurve c, float x, float near_) {
   const float s = c.end.x < 0.0f ? -1.0f : 1.0f;
   return conic ? gpgpConicAt(s * c.control.x, s * c.end.x, c.weight, s * x)
-               : gpgpCubicAt(s * c.control.x, s * c.control2.x, s * c.end.x, s * x);
+               : gpgpCubicAt(s * c.control.x, s * c.control2.x, s * c.end.x, s * x, near_);
+}
+
+// On which side of a curve a box lies: 0: both, 1: all of it right, 2: all of it left. The box lies within the curve's
+// rows; low, high: its corners, from the curve's start. A curve never turns in x or y, so that two corners tell.
+GPGP_FN uint gpgpSideOf(uint slot, uint curves, uint number, GpgpPatchCurve c, vec2 low, vec2 high) {
+  const bool falls = c.end.x >= 0.0f; // to the right
+  const vec2 left = vec2(low.x, falls ? high.y : low.y), right = vec2(high.x, falls ? low.y : high.y);
+  // First the corner that decides on the side of the chord on which the box lies.
+  const bool beyond = gpgpCross(vec2(left.x + right.x, left.y + right.y), c.end) >= 0.0f;
+  GPGP_PATCH_COUNT(sign)
+  const bool first = gpgpRightOf(slot, curves, number, c, beyond ? left : right);
+  if (first == beyond) return beyond ? 1u : 2u;
+  GPGP_PATCH_COUNT(sign)
+  if (gpgpRightOf(slot, curves, number, c, beyond ? right : left) == beyond) return 0u;
+  return beyond ? 2u : 1u;
 }
 
 // The integral of v clamped to 0 .. 1, from 0 on.
 GPGP_FN float gpgpRamp(float v) { return v < 0.0f ? 0.0f : v > 1.0f ? v - 0.5f : 0.5f * v * v; }
 
 // The area of a box that lies left of a curve. The box lies within the curve's rows; low, high: its corners, from the
-// curve's start.
-GPGP_FN float gpgpAreaLeftOf(uint kind, GpgpPatchCurve c, vec2 low, vec2 high) {
+// curve's start. What is far from the curve is told by its ends, then by the sign of its form.
+GPGP_FN float gpgpAreaLeftOf(uint slot, uint curves, uint number, GpgpPatchCurve ends, vec2 low, vec2 high) {
   const float width = high.x - low.x, height = high.y - low.y;
+  GPGP_PATCH_COUNT(box)
+  if (low.x >= max(0.0f, ends.end.x)) return 0.0f;
+  if (high.x <= min(0.0f, ends.end.x)) return width * height;
+  const uint kind = number >> kPatchCurveKind;
   if (kind == kPatchLine) {
-    const float slope = c.end.x / c.end.y;
+    GPGP_PATCH_COUNT(line)
+    const float slope = ends.end.x / ends.end.y;
     const float a = (slope * low.y - low.x) / width, b = (slope * high.y - low.x) / width;
     const float mean = abs(b - a) < 1e-2f ? clamp(0.5f * (a + b), 0.0f, 1.0f) : (gpgpRamp(b) - gpgpRamp(a)) / (b - a);
     return width * height * mean;
   }
+  const GpgpPatchCurve c = gpgpLoadControls(slot, curves, number, ends);
+  const uint side = gpgpSideOf(slot, curves, number, c, low, high);
+  if (side != 0u) return side == 1u ? 0.0f : width * height;
+  GPGP_PATCH_COUNT(solve)
   const bool conic = kind == kPatchConic;
-  float t0 = gpgpCurveAtY(conic, c, low.y), t1 = gpgpCurveAtY(conic, c, high.y);
+  const float nearX = 1e-3f * width, nearY = 1e-3f * height; // of an area that is told to a hundredth
+  float t0 = gpgpCurveAtY(conic, c, low.y, nearY), t1 = gpgpCurveAtY(conic, c, high.y, nearY);
   vec2 p0 = gpgpCurvePoint(conic, c, t0), p1 = gpgpCurvePoint(conic, c, t1);
   p0.y = low.y;
   p1.y = high.y;
@@ -247,13 +305,13 @@ GPGP_FN float gpgpAreaLeftOf(uint kind, GpgpPatchCurve c, vec2 low, vec2 high) {
   float area = 0.0f; // of the rows in which the curve passes right of the box
   if (p0.x < low.x || p0.x > high.x) {
     const bool right = p0.x > high.x;
-    t0 = gpgpCurveAtX(conic, c, right ? high.x : low.x);
+    t0 = gpgpCurveAtX(conic, c, right ? high.x : low.x, nearX);
     p0 = vec2(right ? high.x : low.x, clamp(gpgpCurvePoint(conic, c, t0).y, low.y, high.y));
     area += right ? width * (p0.y - low.y) : 0.0f;
   }
   if (p1.x < low.x || p1.x > high.x) {
     const bool right = p1.x > high.x;
-    t1 = gpgpCurveAtX(conic, c, right ? high.x : low.x);
+    t1 = gpgpCurveAtX(conic, c, right ? high.x : low.x, nearX);
     p1 = vec2(right ? high.x : low.x, clamp(gpgpCurvePoint(conic, c, t1).y, p0.y, high.y));
     area += right ? width * (high.y - p1.y) : 0.0f;
   }
@@ -272,24 +330,23 @@ GPGP_FN float gpgpPatchArea(uint slot, uint curves, uint place, uvec4 head, vec2
   const float width = high.x - low.x;
   float area = width * (bottom - top);
   for (uint k = 0u; k < head.z; ++k) {
-    const uvec4 four = GPGP_PATCH_LOAD(slot, place + 1u + k / 4u);
-    const uint number = (k & 2u) == 0u ? ((k & 1u) == 0u ? four.x : four.y) : ((k & 1u) == 0u ? four.z : four.w);
-    const GpgpPatchCurve c = gpgpLoadCurve(slot, curves, number, origin);
+    const uint number = gpgpCurveOf(slot, place, k);
+    const GpgpPatchCurve c = gpgpLoadEnds(slot, curves, number, origin);
     const float from = max(top, c.start.y), to = min(bottom, c.bottom);
     if (from < to) {
-      const float left = gpgpAreaLeftOf(number >> kPatchCurveKind, c, vec2(low.x - c.start.x, from - c.start.y),
+      const float left = gpgpAreaLeftOf(slot, curves, number, c, vec2(low.x - c.start.x, from - c.start.y),
                                         vec2(high.x - c.start.x, to - c.start.y));
       area -= k < head.w ? left : width * (to - from) - left;
+      if (area <= 0.0f) return 0.0f;
     }
   }
-  return max(area, 0.0f);
+  return area;
 }
 
 // The area of a box that one cell's patches cover; the box is cut to the cell.
 GPGP_FN float gpgpCellArea(uint slot, GpgpPatchPath path, uint column, uint row, vec2 origin, vec2 low, vec2 high) {
-  const uint cell = row * path.columns + column;
-  const uvec4 pair = GPGP_PATCH_LOAD(slot, path.cells + cell / 2u);
-  const uint first = (cell & 1u) != 0u ? pair.z : pair.x, count = (cell & 1u) != 0u ? pair.w : pair.y;
+  uint place = 0u;
+  const uint count = gpgpCellCount(slot, path, column, row, place);
   if (count == 0u) return 0.0f;
   const vec2 corner = vec2(path.box.x - origin.x, path.box.y - origin.y);
   // The last cells end at the box, whatever was rounded.
@@ -300,7 +357,6 @@ GPGP_FN float gpgpCellArea(uint slot, GpgpPatchPath path, uint column, uint row,
   if (left >= right || upper >= lower) return 0.0f;
   if (count == kPatchSolid) return (right - left) * (lower - upper);
   float area = 0.0f;
-  uint place = path.patches + first;
   for (uint i = 0u; i < count; ++i) {
     const uvec4 head = GPGP_PATCH_LOAD(slot, place);
     area += gpgpPatchArea(slot, path.curves, place, head, origin, vec2(left, upper), vec2(right, lower));
@@ -330,15 +386,12 @@ GPGP_FN float gpgpBoxCoverage(uint slot, GpgpPatchPath path, vec2 origin, vec2 a
   const vec2 low = vec2(max(at.x - half_.x, corner.x), max(at.y - half_.y, corner.y));
   const vec2 high = vec2(min(at.x + half_.x, path.box.z - origin.x), min(at.y + half_.y, path.box.w - origin.y));
   if (low.x >= high.x || low.y >= high.y) return 0.0f;
-  const vec2 from = vec2((low.x - corner.x) * path.cell.z, (low.y - corner.y) * path.cell.w);
-  const vec2 to = vec2((high.x - corner.x) * path.cell.z, (high.y - corner.y) * path.cell.w);
-  const float whole = 4.0f * half_.x * half_.y;
-  const uint column0 = uint(clamp(from.x, 0.0f, float(path.columns - 1u)));
-  const uint column1 = uint(clamp(to.x, 0.0f, float(path.columns - 1u)));
-  const uint row0 = uint(clamp(from.y, 0.0f, float(path.rows - 1u)));
-  const uint row1 = uint(clamp(to.y, 0.0f, float(path.rows - 1u)));
+  const uint column0 = gpgpColumnAt(path, origin, low.x), column1 = gpgpColumnAt(path, origin, high.x);
+  const uint row0 = gpgpRowAt(path, origin, low.y), row1 = gpgpRowAt(path, origin, high.y);
   float area = 0.0f;
   if (path.sums != 0u && (column1 - column0 > kPatchFewCells || row1 - row0 > kPatchFewCells)) {
+    const vec2 from = vec2((low.x - corner.x) * path.cell.z, (low.y - corner.y) * path.cell.w);
+    const vec2 to = vec2((high.x - corner.x) * path.cell.z, (high.y - corner.y) * path.cell.w);
     area = (gpgpSummedArea(slot, path, to) - gpgpSummedArea(slot, path, vec2(from.x, to.y))) -
            (gpgpSummedArea(slot, path, vec2(to.x, from.y)) - gpgpSummedArea(slot, path, from));
     area *= path.cell.x * path.cell.y;
@@ -347,7 +400,7 @@ GPGP_FN float gpgpBoxCoverage(uint slot, GpgpPatchPath path, vec2 origin, vec2 a
       for (uint column = column0; column <= column1; ++column)
         area += gpgpCellArea(slot, path, column, row, origin, low, high);
   }
-  return area / whole;
+  return area / (4.0f * half_.x * half_.y);
 }
 
 // Half the box that stands for a pixel: as wide and high as the pixel's shape on the drawing spreads along each axis.

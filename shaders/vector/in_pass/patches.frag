@@ -1,55 +1,48 @@
 #version 460
 // A path's paint, times the part of the pixel that the path covers; or, with several samples, for those samples that
-// lie in one of its patches.
+// lie in one of its patches. The quad paints only the pixels and samples that it owns (gpgp/shaders/patch_quads.h).
+//
+// Pixels within a quad that is inside as a whole read nothing.
 #extension GL_GOOGLE_include_directive : require
 #include "vector/in_pass/patches.glsl"
 layout(constant_id = 0) const uint SAMPLES = 1;
-layout(location = 0) flat in uvec2 which;
+layout(location = 0) flat in uvec4 which; // as in patches.vert
+layout(location = 1) flat in uint drawing;
+layout(location = 2) flat in vec4 paint;
+layout(location = 3) flat in vec4 steps;
+layout(location = 4) flat in vec4 middle;
+layout(location = 5) flat in vec3 weights;
+layout(location = 6) flat in vec4 box;
 layout(location = 0) out vec4 color;
 
-// Vulkan's standard sample locations, in 1/16 of a pixel from its upper left.
-const ivec2 kTwo[2] = {{12, 12}, {4, 4}};
-const ivec2 kFour[4] = {{6, 2}, {14, 6}, {2, 10}, {10, 14}};
-const ivec2 kEight[8] = {{9, 5}, {7, 11}, {13, 9}, {5, 3}, {3, 13}, {1, 7}, {11, 15}, {15, 1}};
-const ivec2 kSixteen[16] = {{9, 9}, {7, 5},  {5, 10}, {12, 7}, {3, 6}, {10, 13}, {13, 11}, {11, 3},
-                            {6, 14}, {8, 1}, {4, 2},  {2, 12}, {0, 8}, {15, 4},  {14, 15}, {1, 0}};
-vec2 sampleAt(uint i) {
-  const ivec2 at = SAMPLES == 2   ? kTwo[i & 1]
-                   : SAMPLES == 4 ? kFour[i & 3]
-                   : SAMPLES == 8 ? kEight[i & 7]
-                                  : kSixteen[i];
-  return vec2(at) / 16 - 0.5;
-}
-
 void main() {
-  const PatchPlacement placement = placementOf(which.x);
-  const PatchView view = viewOf(placement.view);
-  const vec3 stepX = view.inverse0.xyz / header.half_.x, stepY = view.inverse1.xyz / header.half_.y;
   const vec2 pixel = gl_FragCoord.xy - header.middle;
-  const vec3 point = stepX * pixel.x + stepY * pixel.y + view.inverse2.xyz;
-  // Of the view's space, then of the drawing's: counted from the origin.
-  const float scale = 1 / placement.place.z;
-  const vec2 at = point.xy / point.z;
-  const vec2 dx = (stepX.xy - at * stepX.z) * (scale / point.z), dy = (stepY.xy - at * stepY.z) * (scale / point.z);
-  const vec2 origin = (vec2(view.inverse0.w, view.inverse1.w) - placement.place.xy) * scale;
-  const GpgpPatchPath path = gpgpLoadPath(placement.slot, placement.drawing, which.y);
+  const float w = 1 / (weights.x * pixel.x + weights.y * pixel.y + weights.z);
+  precise vec2 at = (steps.xy * pixel.x + steps.zw * pixel.y + middle.xy) * w;
+  const vec2 dx = (steps.xy - at * weights.x) * w, dy = (steps.zw - at * weights.y) * w;
+  const vec2 reach = gpgpPixelReach(dx, dy), origin = middle.zw;
+  const GpgpPatchQuad quad = gpgpUnpackQuad(which);
+  const uint slot = (which.w / kPatchQuadFlags) & (kPatchBuffers - 1);
+  const bool inside = (which.w & kPatchQuadInside) != 0 && gpgpHoldsPixel(box, at, reach);
+  const bool gradient = which.w >= kPatchQuadFlags * kPatchBuffers;
+  GpgpPatchPath path;
+  if (!inside || gradient) path = gpgpLoadPath(slot, drawing, quad.path);
   float coverage = 1;
-  if (SAMPLES == 1) {
-    coverage = gpgpPathCoverage(placement.slot, path, origin, at * scale, dx, dy);
+  uint mask = (1u << SAMPLES) - 1;
+  if (!inside && SAMPLES == 1) {
+    if (!gpgpQuadOwns(slot, path, quad, origin, at, reach)) discard;
+    coverage = gpgpPathCoverage(slot, path, origin, at, dx, dy);
     if (coverage == 0) discard;
-    gl_SampleMask[0] = 1;
-  } else {
-    int mask = 0;
-    for (uint i = 0; i < SAMPLES; ++i) {
-      const vec2 moved = sampleAt(i);
-      const vec3 there = point + stepX * moved.x + stepY * moved.y;
-      if (gpgpPatchesAt(placement.slot, path, origin, there.xy / there.z * scale) != 0) mask |= 1 << i;
-    }
+  } else if (!inside) {
+    mask = gpgpQuadMask(slot, path, quad, origin, at, dx, dy, SAMPLES);
     if (mask == 0) discard;
-    gl_SampleMask[0] = mask;
   }
-  const vec4 straight = gpgpPathColor(placement.slot, placement.drawing, path, at * scale + origin, placement.color,
-                                      (header.flags & kPatchEncodeSrgb) != 0);
-  const float alpha = straight.a * coverage;
-  color = vec4(straight.rgb * alpha, alpha);
+  gl_SampleMask[0] = int(mask);
+  if (gradient) {
+    const vec4 straight =
+        gpgpPathColor(slot, drawing, path, at + origin, paint, (header.flags & kPatchEncodeSrgb) != 0);
+    color = vec4(straight.rgb * straight.a, straight.a) * coverage;
+  } else {
+    color = paint * coverage;
+  }
 }

@@ -26,7 +26,7 @@ uvec4 loadPatches(uint slot, uint index) {
 }
 #define GPGP_PATCH_LOAD(slot, index) loadPatches(slot, index)
 #endif
-#include "gpgp/shaders/patches.h"
+#include "gpgp/shaders/patch_quads.h"
 
 layout(std430, set = 0, binding = kBindPatchRecording) readonly buffer Recording {
   PatchHeader header;

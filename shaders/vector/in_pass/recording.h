@@ -1,5 +1,5 @@
 // What the host writes for a draw of patches: views (maps to clip space and back) and placements (what is shown by
-// which of them). Quads are counted over all placements: one for each path.
+// which of them). Quads are counted over all placements: all that a drawing has, or one for each path.
 #ifndef GPGP_SHADERS_VECTOR_IN_PASS_RECORDING_H
 #define GPGP_SHADERS_VECTOR_IN_PASS_RECORDING_H
 #include "vector/shared/layout.h"
@@ -19,7 +19,7 @@ struct PatchPlacement {
   uint drawing; // where its patches begin in the buffer
   uint firstQuad;
   uint view; // two for each item
-  uint slot;
+  uint slot; // of its buffer; kPatchCoarse: its quads are one for each path
 };
 
 struct PatchHeader {
@@ -31,6 +31,7 @@ struct PatchHeader {
 };
 
 GPGP_CONST uint kPatchEncodeSrgb = 1u;
+GPGP_CONST uint kPatchCoarse = 16u;
 GPGP_CONST uint kPatchViewSize = 6u; // vec4
 GPGP_CONST uint kPatchBuffers = 8u;
 GPGP_CONST int kBindPatchRecording = 8; // after the buffers

@@ -182,7 +182,8 @@ core::Result<Drawing> loadBaked(std::span<const std::byte> bytes, std::pmr::memo
   std::memcpy(drawing.viewport, header.viewport, sizeof header.viewport);
   if (auto ok = checkContents(drawing); !ok) return ok.error();
   if (!drawing.words.empty())
-    if (auto ok = checkPatches(drawing.words, static_cast<uint32_t>(drawing.paths.size()) - clipPaths(drawing)); !ok)
+    if (auto ok = checkPatches(drawing.words, static_cast<uint32_t>(drawing.paths.size()) - clipPaths(drawing), memory);
+        !ok)
       return ok.error();
   return drawing;
 }

@@ -1,6 +1,6 @@
 // A path's cells, and the words of a drawing that shaders read.
 //
-// Each path's box is cut into a grid of cells, some two for each curve that bounds it. A cell lists copies of the
+// Each path's box is cut into a grid of cells, some four for each curve that bounds it. A cell lists copies of the
 // patches that meet it, without the curves that leave all of the cell on their inner side; a cell without any curve is
 // solid. Coverage adds up over cells, so a pixel may meet any number of them: where it meets many, a table of summed
 // areas answers instead.
@@ -85,7 +85,7 @@ private:
                  height = std::max(exact(box_.w) - exact(box_.y), 1e-30);
     size_t slanted = 0; // curves that are no upright lines
     for (const FormCurve& c : path_->curves) slanted += c.kind != PatchReader::kPatchLine || c.x0 != c.x1;
-    const double cells = slanted == 0 && path_->patches.size() <= 4 ? 1 : 2 * double(path_->curves.size());
+    const double cells = slanted == 0 && path_->patches.size() <= 4 ? 1 : 4 * double(path_->curves.size());
     const auto along = [&](double ratio) {
       return static_cast<uint32_t>(std::clamp(std::round(std::sqrt(cells * ratio)), 1.0, double(kMostCells)));
     };
@@ -319,6 +319,19 @@ core::Result<Patches> makePatches(const Drawing& drawing, std::pmr::memory_resou
     if (made.words.size() > kMostWords)
       return makeError(GPGP_ERROR_UNSUPPORTED, "the patches take more than %u bytes", kMostWords);
   }
+  std::pmr::vector<uvec4> quads(memory);
+  float largest = 0;
+  for (uint32_t i = 0; i < made.paths; ++i) {
+    uvec4* record = &made.words[PatchReader::kPatchHeader + i * PatchReader::kPatchPathSize];
+    const float smallest = appendQuads(made.words, i, quads);
+    record[5].x = bits(smallest);
+    if (smallest > 0)
+      largest =
+          std::max(largest, std::min(std::bit_cast<float>(record[2].x), std::bit_cast<float>(record[2].y)) / smallest);
+  }
+  made.quads = static_cast<uint32_t>(quads.size());
+  made.words[1] = {static_cast<uint32_t>(made.words.size()), made.quads, bits(largest), 0};
+  made.words.insert(made.words.end(), quads.begin(), quads.end());
   made.words[0] = {made.paths, Patches::kVersion, static_cast<uint32_t>(made.leftOut.size()),
                    static_cast<uint32_t>(made.words.size())};
   return made;

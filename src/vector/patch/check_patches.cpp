@@ -2,6 +2,7 @@
 #include "vector/patch/patch_reader.h"
 #include "vector/patch/patches.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -96,7 +97,9 @@ private:
 
 } // namespace
 
-core::Result<void> checkPatches(std::span<const uvec4> words, uint32_t paths) {
+core::Result<void> checkPatches(std::span<const uvec4> words, uint32_t paths, std::pmr::memory_resource* memory) {
+  if (words.size() < PatchReader::kPatchHeader)
+    return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: its patches are cut off");
   const uvec4& head = words[0];
   if (head.y != Patches::kVersion)
     return makeError(GPGP_ERROR_INVALID_DATA,
@@ -107,9 +110,24 @@ core::Result<void> checkPatches(std::span<const uvec4> words, uint32_t paths) {
       PatchReader::kPatchHeader + uint64_t(paths) * PatchReader::kPatchPathSize > words.size())
     return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: its patches are not those of its paths");
   Checker checker(words);
-  for (uint32_t i = 0; i < paths; ++i)
+  std::pmr::vector<uvec4> quads(memory);
+  float largest = 0;
+  for (uint32_t i = 0; i < paths; ++i) {
     if (!checker.path(i))
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: the patches of path %u refer to what is not there", i);
+    const float smallest = appendQuads(words, i, quads);
+    const uvec4* record = &words[PatchReader::kPatchHeader + i * PatchReader::kPatchPathSize];
+    if (record[5] != uvec4(std::bit_cast<uint32_t>(smallest), 0, 0, 0))
+      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: the cells of path %u are not as large as it says", i);
+    if (smallest > 0)
+      largest =
+          std::max(largest, std::min(std::bit_cast<float>(record[2].x), std::bit_cast<float>(record[2].y)) / smallest);
+  }
+  const uvec4& drawn = words[1]; // quads are what the cells say
+  if (uint64_t(drawn.x) + drawn.y != words.size() || drawn.y != quads.size() ||
+      drawn.z != std::bit_cast<uint32_t>(largest) || drawn.w ||
+      !std::equal(quads.begin(), quads.end(), words.begin() + drawn.x))
+    return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: its quads are not those of its cells");
   return {};
 }
 

@@ -10,6 +10,7 @@
 #include "vector/patch/patches.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <optional>
@@ -237,6 +238,47 @@ void appendCubic(const Piece& source, int depth, std::pmr::vector<FormCurve>& fo
 }
 
 } // namespace
+
+std::optional<FormCurve> joinArcs(const FormCurve& first, const FormCurve& second) {
+  for (const FormCurve* arc : {&first, &second})
+    if (arc->kind != PatchReader::kPatchConic || !(arc->weight < 1)) return std::nullopt;
+  if (first.x1 != second.x0 || first.y1 != second.y0) return std::nullopt;
+  const auto from = [&](float x, float y) { return Point{exact(x) - exact(first.x0), exact(y) - exact(first.y0)}; };
+  const Point c1{exact(first.control[0]), exact(first.control[1])}, met = from(first.x1, first.y1);
+  const Point c2 = met + Point{exact(second.control[0]), exact(second.control[1])}, end = from(second.x1, second.y1);
+  const Point tangent = end - c2;
+  const double turn = cross(c1, tangent);
+  if (!(std::abs(turn) > 1e-3 * std::hypot(c1.x, c1.y) * std::hypot(tangent.x, tangent.y))) return std::nullopt;
+  const Point control = (cross(end, tangent) / turn) * c1;
+  const double size = std::max(std::abs(end.x), end.y);
+  const double slack = 3e-7 * std::max({std::abs(exact(first.x0)), std::abs(exact(first.y0)), size});
+  const Point within = intoBox(control, end);
+  const double whole = cross(control, end);
+  if (!(std::hypot(within.x - control.x, within.y - control.y) <= slack) || whole == 0) return std::nullopt;
+  // The parts of start, control and end in a point; the weight is that of the conic through the point where they meet.
+  const auto parts = [&](Point q) {
+    const double b = cross(q, end) / whole, c = cross(control, q) / whole;
+    return std::array{1 - b - c, b, c};
+  };
+  const auto [a, b, c] = parts(met);
+  if (!(a > 0 && b > 0 && c > 0)) return std::nullopt;
+  const double weight = b / (2 * std::sqrt(a * c));
+  if (!(weight > 0.1 && weight < 1)) return std::nullopt;
+  const auto off = [&](Point q) { // how far a point is from that conic
+    const auto [u, v, w] = parts(q);
+    const double f = v * v - 4 * weight * weight * u * w, outer = 4 * weight * weight;
+    const Point dv{end.y / whole, -end.x / whole}, dw{-control.y / whole, control.x / whole}, du = -1.0 * (dv + dw);
+    const Point slope = 2 * v * dv - outer * (w * du + u * dw);
+    return std::abs(f) / std::hypot(slope.x, slope.y);
+  };
+  const auto middle = [](Point start, Point control_, Point end_, double w) {
+    return (1 / (2 + 2 * w)) * (start + 2 * w * control_ + end_);
+  };
+  if (!(off(middle({}, c1, met, exact(first.weight))) <= slack) ||
+      !(off(middle(met, c2, end, exact(second.weight))) <= slack))
+    return std::nullopt;
+  return conicOf(pieceOf(first.x0, first.y0, second.x1, second.y1, {}, {}), control, weight);
+}
 
 double FormCurve::xAt(double y) const {
   const double v = y - exact(y0), height = exact(y1) - exact(y0), width = exact(x1) - exact(x0);

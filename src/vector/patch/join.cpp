@@ -1,4 +1,5 @@
-// A path's slabs to patches: slabs that lie above each other, edge on edge, become one.
+// A path's slabs to patches: slabs that lie above each other, edge on edge, become one. Before that, arcs that the
+// outline's cubics were cut into become as long as they can be without a turn: quarters of an upright ellipse.
 //
 // A slab is first cut where one of its curves ends and the next begins, then has one curve on each side. Where it ends,
 // it may be continued by the slab whose upper edge is its lower one: bounded there by the same curves, or by curves
@@ -37,9 +38,11 @@ struct Strip { // with one curve on each side
 class Joiner {
 public:
   Joiner(const Drawing& drawing, uint32_t maxCurves, JoinedPath& path, std::pmr::memory_resource* memory)
-      : drawing_(drawing), maxCurves_(maxCurves), path_(path), places_(memory), strips_(memory), open_(memory) {}
+      : drawing_(drawing), maxCurves_(maxCurves), path_(path), places_(memory), strips_(memory), open_(memory),
+        one_(memory) {}
 
   void run(std::span<const PatchRecord> slabs) {
+    joinAlong(slabs);
     for (const PatchRecord& slab : slabs) cut(slab);
     std::stable_sort(strips_.begin(), strips_.end(), [](const Strip& a, const Strip& b) { return a.top < b.top; });
     for (const Strip& strip : strips_) add(strip);
@@ -49,6 +52,48 @@ private:
   struct Place { // of a curve's forms in the table
     uint32_t first, last;
   };
+  /// Gives arcs of one ellipse, each from the end of another on, one place in the table.
+  void joinAlong(std::span<const PatchRecord> slabs) {
+    constexpr uint32_t kSeveral = UINT32_MAX;
+    std::pmr::unordered_map<uint64_t, uint32_t> starts(
+        places_.get_allocator().resource()); // of arcs, by where they start
+    std::pmr::vector<uint32_t> arcs(places_.get_allocator().resource());
+    const auto key = [](float x, float y) {
+      return uint64_t(std::bit_cast<uint32_t>(x)) << 32 | std::bit_cast<uint32_t>(y);
+    };
+    for (const PatchRecord& slab : slabs)
+      for (const uint32_t curve : {slab.left, slab.right}) {
+        const CurveRecord& c = drawing_.curves[curve];
+        if (c.weight > 0) arcs.push_back(curve);
+      }
+    const auto before = [&](uint32_t a, uint32_t b) {
+      const float ya = drawing_.curves[a].ends.y, yb = drawing_.curves[b].ends.y;
+      return ya != yb ? ya < yb : a < b;
+    };
+    std::sort(arcs.begin(), arcs.end(), before);
+    arcs.erase(std::unique(arcs.begin(), arcs.end()), arcs.end());
+    for (const uint32_t arc : arcs) {
+      const CurveRecord& c = drawing_.curves[arc];
+      const auto [found, added] = starts.try_emplace(key(c.ends.x, c.ends.y), arc);
+      if (!added) found->second = kSeveral;
+    }
+    for (const uint32_t arc : arcs) {
+      if (places_.contains(arc)) continue; // of one above
+      const Place own = place(arc);
+      for (;;) {
+        FormCurve& form = path_.curves[own.first];
+        const auto next = starts.find(key(form.x1, form.y1));
+        if (next == starts.end() || next->second == kSeveral || places_.contains(next->second)) break;
+        one_.clear();
+        appendForms(drawing_.curves[next->second], one_);
+        const auto joined = joinArcs(form, one_[0]);
+        if (!joined) break;
+        form = *joined;
+        places_.emplace(next->second, own);
+      }
+    }
+  }
+
   Place place(uint32_t curve) {
     const auto [found, added] = places_.try_emplace(curve);
     if (added) {
@@ -115,6 +160,7 @@ private:
   std::pmr::unordered_map<uint32_t, Place> places_;
   std::pmr::vector<Strip> strips_;
   std::pmr::unordered_map<Edge, uint32_t, EdgeHash> open_; // lower edges of patches
+  std::pmr::vector<FormCurve> one_;
 };
 
 } // namespace

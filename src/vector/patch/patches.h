@@ -1,7 +1,8 @@
 // CPatches as shaders evaluate them (gpgp/shaders/patches.h): the implicit forms of a drawing's curves, slabs joined to
 // patches of at most kMaxPatchCurves curves, and cells that say which patches meet them.
 //
-// Stages (a file each): forms (a curve's) -> join (a path's slabs) -> cells (its cells, and the drawing's words).
+// Stages (a file each): forms (a curve's) -> join (a path's slabs) -> cells (its cells, and the drawing's words) ->
+// quads (what is drawn).
 #pragma once
 #include "vector/patch/drawing.h"
 
@@ -31,6 +32,10 @@ enum class CubicType { serpentine, cusp, loop };
 void appendForms(const CurveRecord& curve, std::pmr::vector<FormCurve>& forms,
                  std::pmr::vector<CubicType>* types = nullptr);
 
+/// Two arcs of one ellipse, the second from the first one's end on, as one; nothing where they are not that, or where
+/// the whole would turn.
+std::optional<FormCurve> joinArcs(const FormCurve& first, const FormCurve& second);
+
 /// A patch of a path: rows, and curves by number, those on the left first, each side from top to bottom.
 struct JoinedPatch {
   float top = 0, bottom = 0;
@@ -38,8 +43,8 @@ struct JoinedPatch {
   uint32_t curveCount = 0, lefts = 0;
 };
 
-/// What a path's slabs become: curves that stand once in a table, and patches. Slabs that lie above each other are
-/// joined as long as no more than `maxCurves` curves bound them.
+/// What a path's slabs become: curves that stand once in a table, arcs of an ellipse as long as they can be, and
+/// patches. Slabs that lie above each other are joined as long as no more than `maxCurves` curves bound them.
 struct JoinedPath {
   explicit JoinedPath(std::pmr::memory_resource* memory) : curves(memory), patches(memory) {}
   std::pmr::vector<FormCurve> curves;
@@ -55,18 +60,31 @@ struct Patches {
     const char* reason;
   };
   explicit Patches(std::pmr::memory_resource* memory) : words(memory), leftOut(memory) {}
-  static constexpr uint32_t kVersion = 1;
+  static constexpr uint32_t kVersion = 2;
   std::pmr::vector<shader::uvec4> words;
-  uint32_t paths = 0, patches = 0, curves = 0, cells = 0, solidCells = 0, cellPatches = 0;
+  uint32_t paths = 0, quads = 0, patches = 0, curves = 0, cells = 0, solidCells = 0, cellPatches = 0;
   std::pmr::vector<LeftOut> leftOut; ///< paths that patches do not draw, and so have none
 };
+
+/// What a draw of patches must know of them.
+struct PatchQuads {
+  uint32_t paths = 0, all = 0; ///< quads, one for each path and with those of cells
+  float largestPixel = 0;      ///< in drawing units: where pixels are as large as that, no path's cells are drawn
+};
+PatchQuads quadsOf(std::span<const shader::uvec4> words);
 
 /// All paths that paint, or `count` of them from `first` on. UNSUPPORTED where one cell has too many patches for a
 /// shader's loop.
 core::Result<Patches> makePatches(const Drawing& drawing, std::pmr::memory_resource* memory,
                                   uint32_t maxCurves = kPatchCurves, uint32_t first = 0, uint32_t count = UINT32_MAX);
 
+/// Appends the quads of a path (gpgp/shaders/patch_quads.h) for the cells that its words hold: the first for all of it,
+/// then cells that its edge passes and rectangles of solid ones, row by row.
+/// Returns `smallest` of the path's record: how many pixels long cells are from which on it is less work to draw them.
+float appendQuads(std::span<const shader::uvec4> words, uint32_t path, std::pmr::vector<shader::uvec4>& quads);
+
 /// Checks everything that a shader would trust, in words from a file that has so many paths that paint. INVALID_DATA.
-core::Result<void> checkPatches(std::span<const shader::uvec4> words, uint32_t paths);
+core::Result<void> checkPatches(std::span<const shader::uvec4> words, uint32_t paths,
+                                std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 } // namespace gpgp::vector

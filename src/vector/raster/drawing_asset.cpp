@@ -53,7 +53,7 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
     if (!patches) return patches.error();
     if (!drawing.words.empty()) patches->words = std::move(drawing.words);
     asset->patchWords_ = static_cast<uint32_t>(tables.bytes.size() / sizeof(shader::vec4));
-    asset->quads_ = patches->words[0].x;
+    asset->quads_ = quadsOf(patches->words);
     asset->pathsLeftOut_ = patches->words[0].z;
     const auto words = std::as_bytes(std::span(patches->words));
     tables.bytes.insert(tables.bytes.end(), words.begin(), words.end());

@@ -1,6 +1,7 @@
 // Drawings and canvas histories as the engine holds them: one device buffer each, resident after upload.
 #pragma once
 #include "core/resident.h"
+#include "vector/patch/patches.h"
 #include "vector/raster/segments.h"
 
 #include <optional>
@@ -45,7 +46,7 @@ public:
   uint32_t pathTable() const { return pathTable_; } ///< where BoxedPaths begin, in vec4
   GpgpDrawingMethods methods() const { return methods_; }
   uint32_t patchWords() const { return patchWords_; } ///< where its patches begin, in vec4
-  uint32_t quads() const { return quads_; }           ///< that a draw of its patches has
+  const PatchQuads& quads() const { return quads_; }  ///< that a draw of its patches has
   uint32_t pathsLeftOut() const { return pathsLeftOut_; }
   const shader::SlotRecord& tables() const { return tables_; }
   bool groups() const { return tables_.layers > tables_.clips || layerDepth_; } ///< that clip or fade
@@ -73,7 +74,8 @@ private:
   std::optional<Hit> hit_; // where it is hit-testable, but not editable
   uint32_t curves_ = 0, patches_ = 0, images_ = 0, pathTable_ = 0, layerDepth_ = 0;
   GpgpDrawingMethods methods_ = GPGP_DRAWING_FLATTENED;
-  uint32_t patchWords_ = 0, quads_ = 0, pathsLeftOut_ = 0;
+  uint32_t patchWords_ = 0, pathsLeftOut_ = 0;
+  PatchQuads quads_;
   shader::SlotRecord tables_{};
   float bounds_[4] = {}, viewport_[4] = {};
 };

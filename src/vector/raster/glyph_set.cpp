@@ -182,11 +182,13 @@ bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
     const uint32_t firstSegment = tables.segmentsBefore(firstPath);
     glyph.segments = tables.segmentsBefore(path) - firstSegment;
     glyph.paths = tables.flattened ? entry.paths : 0;
-    glyph.quads = tables.wordsOf(index) ? entry.paths : 0;
     glyph.patches = block + static_cast<uint32_t>(tables.outlinesOf(firstPath, entry.paths));
-    if (glyph.quads)
-      std::memcpy(bytes().data() + size_t(glyph.patches) * 16, &tables.words[tables.wordsBefore(index)],
-                  size_t(tables.wordsOf(index)) * 16);
+    glyph.quads = {};
+    if (const size_t count = tables.wordsOf(index)) {
+      const auto words = std::span(tables.words).subspan(tables.wordsBefore(index), count);
+      glyph.quads = quadsOf(words);
+      std::memcpy(bytes().data() + size_t(glyph.patches) * 16, words.data(), words.size_bytes());
+    }
     glyph.living = true;
     glyph.gradients = tables.flattened && tables.gradientsOf(firstPath, entry.paths) > 0;
     glyph.use(frame);

@@ -7,6 +7,7 @@
 #pragma once
 #include "core/resident.h"
 #include "vector/patch/glyphs.h"
+#include "vector/patch/patches.h"
 
 #include <atomic>
 
@@ -17,10 +18,11 @@ public:
   struct Glyph {
     uint32_t first = 0, size = 0;     ///< its block, in vec4
     uint32_t segments = 0, paths = 0; ///< none where the set has no outlines
-    uint32_t patches = 0, quads = 0;  ///< where its patches begin, in vec4, and how many quads they are
-    shader::vec2 middle = {};         ///< of the path that it is
-    shader::vec2 reach = {};          ///< from there to the sides of its box; infinite where it is not one path
-    uint16_t generation = 0;          ///< of the glyph; of the next one where there is none
+    uint32_t patches = 0;             ///< where they begin, in vec4
+    PatchQuads quads;
+    shader::vec2 middle = {}; ///< of the path that it is
+    shader::vec2 reach = {};  ///< from there to the sides of its box; infinite where it is not one path
+    uint16_t generation = 0;  ///< of the glyph; of the next one where there is none
     bool living = false, gradients = false;
     mutable uint64_t lastUsed = 0; ///< frame
     uint64_t upload = 0;           ///< its range's number; 0: nothing to upload

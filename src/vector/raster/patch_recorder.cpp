@@ -9,6 +9,7 @@
 #include "shaders/vector_patches_vert_10.spv.h"
 #include "shaders/vector_patches_vert_11.spv.h"
 #include "vector/in_pass/recording.h"
+#include "vector/patch/patches.h"
 
 #include <algorithm>
 #include <cmath>
@@ -84,6 +85,21 @@ bool viewOf(const float* clip, PatchView& view) {
   return true;
 }
 
+/// Along which axis a pixel spreads less at a point of the view's plane, and how far there; 0: it lies behind the eye.
+float spreadAt(const PatchView& view, const GpgpPatchDrawInfo& info, float x, float y) {
+  const float px = x - view.inverse0.w, py = y - view.inverse1.w;
+  const float w = view.column0.w * px + view.column1.w * py + view.column2.w;
+  if (!(w > 0)) return 0;
+  const float across = 2 * w / info.viewport[2], down = 2 * w / std::abs(info.viewport[3]);
+  const auto spread = [&](float acrossOf, float downOf, float p) {
+    return std::abs(acrossOf - p * view.inverse0.z) * across + std::abs(downOf - p * view.inverse1.z) * down;
+  };
+  return std::min(spread(view.inverse0.x, view.inverse1.x, px), spread(view.inverse0.y, view.inverse1.y, py));
+}
+bool affine(const PatchView& view) { return view.column0.w == 0 && view.column1.w == 0; }
+/// Whether no path has cells that are large enough on the screen to be drawn (gpgpShowsCells).
+bool small(const PatchQuads& quads, float size, float spread) { return quads.largestPixel * size < spread; }
+
 Result<void> checkMatrix(const float* matrix, uint32_t item, const char* name) {
   for (int i = 0; i < 16; ++i)
     if (!std::isfinite(matrix[i]))
@@ -126,7 +142,8 @@ Result<void> PatchRecorder::begin(const GpgpPatchDrawInfo& info) {
   if (info.target->samples > VK_SAMPLE_COUNT_1_BIT && !context.device.limits.standardSampleLocations)
     return makeError(GPGP_ERROR_UNSUPPORTED, "this device has no standardSampleLocations, which several samples need");
   bound_ = {};
-  slots_ = views_ = placements_ = quads_ = glyphs_ = 0;
+  slots_ = views_ = placements_ = glyphs_ = 0;
+  quads_ = 0;
   place_ = constants();
   if (!place_)
     return makeError(GPGP_ERROR_TOO_MANY_RECORDINGS,
@@ -172,16 +189,24 @@ Result<void> PatchRecorder::add(const GpgpPatchDrawInfo& info, uint32_t index, c
   std::memcpy(place_ + sizeof(PatchHeader) + size_t(view) * sizeof(PatchView), views, sizeof views);
   ++views_;
   const size_t placements = sizeof(PatchHeader) + size_t(maxItems_) * 2 * sizeof(PatchView);
-  const auto put = [&](const PatchPlacement& placement, uint32_t quads) {
+  const auto put = [&](PatchPlacement placement, const PatchQuads& quads, bool coarse) {
+    placement.firstQuad = static_cast<uint32_t>(quads_); // finish() checks that it fits
+    if (coarse) placement.slot |= shader::kPatchCoarse;
     std::memcpy(place_ + placements + size_t(placements_++) * sizeof placement, &placement, sizeof placement);
-    quads_ += quads;
+    quads_ += coarse ? quads.paths : quads.all;
+  };
+  const bool flat = affine(views[0]) && affine(views[1]); // then a pixel spreads everywhere as far
+  const auto leastSpread = [&](float x, float y) {
+    return std::min(spreadAt(views[0], info, x, y), spreadAt(views[1], info, x, y));
   };
   if (asset.drawing) {
-    if (asset.drawing->quads())
-      put({{0, 0, 1, 0}, {0, 0, 0, item.opacity}, asset.drawing->patchWords(), quads_, view, slot},
-          asset.drawing->quads());
+    const PatchQuads& quads = asset.drawing->quads();
+    if (quads.paths)
+      put({{0, 0, 1, 0}, {0, 0, 0, item.opacity}, asset.drawing->patchWords(), 0, view, slot}, quads,
+          quads.paths == quads.all || (flat && small(quads, 1, leastSpread(0, 0))));
     return {};
   }
+  const float everywhere = flat ? leastSpread(0, 0) : 0;
   const auto table = asset.glyphSet->table();
   const uint64_t arrived = asset.glyphSet->arrived();
   for (uint32_t i = 0; i < item.glyphCount; ++i) {
@@ -196,22 +221,27 @@ Result<void> PatchRecorder::add(const GpgpPatchDrawInfo& info, uint32_t index, c
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u].glyphs[%u] has a place, size or colour out of range",
                        index, i);
     glyph->use(context.current());
-    if (!glyph->quads || !(g.size > 0)) continue;
+    const PatchQuads& quads = glyph->quads;
+    if (!quads.paths || !(g.size > 0)) continue;
     if (glyphs_++ == maxGlyphs_)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "more glyphs than the recorder was made for: %u (maxGlyphs)",
                        maxGlyphs_);
     put({{g.x, g.y, g.size, 0},
          {g.color[0], g.color[1], g.color[2], g.color[3] * item.opacity},
          glyph->patches,
-         quads_,
+         0,
          view,
          slot},
-        glyph->quads);
+        quads, quads.paths == quads.all || small(quads, g.size, flat ? everywhere : leastSpread(g.x, g.y)));
   }
   return {};
 }
 
 Result<void> PatchRecorder::finish(VkCommandBuffer commandBuffer, const GpgpPatchDrawInfo& info) {
+  constexpr uint64_t kQuadVertices = 6; // as patches.vert takes them
+  if (quads_ > UINT32_MAX / kQuadVertices)
+    return makeError(GPGP_ERROR_UNSUPPORTED, "%llu quads are more than one draw can show",
+                     static_cast<unsigned long long>(quads_));
   PatchHeader header{};
   header.placements = placements_;
   header.firstPlacement = maxItems_ * 2 * shader::kPatchViewSize;
@@ -226,8 +256,7 @@ Result<void> PatchRecorder::finish(VkCommandBuffer commandBuffer, const GpgpPatc
     r.bindings[i].ownSize = bound_[i]->size();
   }
   r.target = info.target;
-  r.vertexCount = 4;
-  r.instanceCount = quads_;
+  r.vertexCount = static_cast<uint32_t>(kQuadVertices * quads_);
   r.form = slots_ > 1 ? kSeveralDrawings : kOneDrawing;
   return recordDraw(r);
 }

@@ -1,7 +1,7 @@
 // The patch recorder: drawings and texts as geometry inside the engine's render pass.
 //
-// One instanced draw. The host writes views and placements (shaders/vector/in_pass/recording.h); each path is a quad,
-// found by its number among all placements' quads. There is no pass before it, and nothing is kept.
+// One draw. The host writes views and placements (shaders/vector/in_pass/recording.h); paths and their cells
+// are quads, found by their number among all placements' quads. There is no pass before it, and nothing is kept.
 #pragma once
 #include "core/recorder.h"
 #include "vector/raster/gather.h"
@@ -42,7 +42,8 @@ private:
   // Of the recording at hand.
   std::byte* place_ = nullptr; ///< where its constants lie
   std::array<const core::Resident*, 8> bound_ = {};
-  uint32_t slots_ = 0, views_ = 0, placements_ = 0, quads_ = 0, glyphs_ = 0;
+  uint32_t slots_ = 0, views_ = 0, placements_ = 0, glyphs_ = 0;
+  uint64_t quads_ = 0;
 };
 
 } // namespace gpgp::vector
