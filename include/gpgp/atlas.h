@@ -54,7 +54,7 @@ GPGP_API GpgpResult GPGP_CALL gpgpCreateAtlas(GpgpContext context, const GpgpAtl
 
 /* ---------------------------------------------------------------- atlas recorder */
 
-/** Budgets of an atlas recorder. Scratch: 960 KiB, 4.6 bytes for each of maxTriangles, and 11 words for each bucket and
+/** Budgets of an atlas recorder. Scratch: 960 KiB, 4.4 bytes for each of maxTriangles, and 44 bytes for each bucket and
  *  each 1024 of maxTriangles. */
 typedef struct GpgpAtlasRecorderCreateInfo {
   GpgpStructureType sType;

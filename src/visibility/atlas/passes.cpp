@@ -22,7 +22,7 @@ using core::ResourceKind;
 void addResources(core::PassList& list, const AtlasBudgets& budgets) {
   const auto engine = [&](const char* name) { list.add({name, ResourceKind::buffer, 0, true}); };
   const auto own = [&](const char* name, VkDeviceSize bytes) { list.add({name, ResourceKind::scratch, bytes}); };
-  list.add({"parameters", ResourceKind::uniforms, sizeof(shader::AtlasParams)});
+  list.add({"params", ResourceKind::uniforms, sizeof(shader::AtlasParams)});
   list.add({"atlas", ResourceKind::buffer, 0, false});
   engine("visibleBits");
   engine("triangleSizes");
@@ -36,7 +36,7 @@ void addResources(core::PassList& list, const AtlasBudgets& budgets) {
   own("plans", VkDeviceSize(budgets.maxTriangles) * 4);
   own("rows", budgets.rowWords() * 4);
   own("superblocks", VkDeviceSize(shader::kMaxSupers) * shader::kSuperWords * 4);
-  own("superblock lists", VkDeviceSize(shader::kMaxSupers) * (shader::kClasses + 1) * 8);
+  own("lists", VkDeviceSize(shader::kMaxSupers) * (shader::kClasses + 1) * 8);
   own("histogram", VkDeviceSize(shader::kKeys) * shader::kVariants * 4);
   engine("blocks");
   engine("tiles");
