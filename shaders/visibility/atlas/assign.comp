@@ -17,6 +17,7 @@ layout(std430, set = 0, binding = kAtlasGone) writeonly buffer GoneBuffer { uint
 #include "visibility/atlas/buckets.glsl"
 
 shared uint counts[kMaxBuckets * kClasses];
+shared bool changes[4]; // whether a round has any to rank
 
 /// The superblock and place of a request that takes free place number n of those before new superblocks.
 uvec2 freePlace(uint class_, uint n) {
@@ -66,7 +67,9 @@ void main() {
   uint lane = gl_LocalInvocationIndex;
   bool repacked = counters.repacked != 0u;
   for (uint i = lane; i < kMaxBuckets * kClasses; i += 256u) counts[i] = 0u;
+  if (lane < 4u) changes[lane] = false;
   if (lane < kRowTiles) rowStart[lane] = rows[rowAt(lane, gl_WorkGroupID.x)];
+  barrier();
   for (uint round = 0u; round < 4u; ++round) {
     uint triangle = gl_WorkGroupID.x * kAtlasGroup + round * 256u + lane;
     bool there = triangle < params.maxTriangles;
@@ -76,11 +79,15 @@ void main() {
     uint list = there ? listOf(plan) : kMaxRows;
     if (repacked && list == kRowKept) list = kRowChanged;
     uint row = (repacked ? kRowAll : kRowRequests) + class_ - kMinClass;
-    clearRanks(lane);
+    clearRanks(kRowTiles, lane);
+    if (moves || list != kMaxRows) changes[round] = true;
     barrier();
-    if (moves) enterRank(row, lane);
-    if (list != kMaxRows) enterRank(list, lane);
-    barrier();
+    bool ranked = changes[round];
+    if (ranked) {
+      if (moves) enterRank(row, lane);
+      if (list != kMaxRows) enterRank(list, lane);
+      barrier();
+    }
     if (there) {
       uint state = history[stateAt(triangle)];
       uint next = state;
@@ -109,9 +116,11 @@ void main() {
         }
       }
     }
-    barrier();
-    advanceRanks(lane);
-    barrier();
+    if (ranked) {
+      barrier();
+      advanceRanks(kRowTiles, lane);
+      barrier();
+    }
   }
   for (uint i = lane; i < params.bucketCount * kClasses; i += 256u)
     rows[rowAt(kRowTiles + i, gl_WorkGroupID.x)] = counts[i];

@@ -13,20 +13,25 @@ layout(std430, set = 0, binding = kAtlasTiles) writeonly buffer TileBuffer { uve
 
 shared uint ends[256];   // of each invocation's tiles, one behind the other
 shared uint starts[256]; // where they lie in the list
+shared bool shades[4];   // whether a round has any
 
 void main() {
   uint lane = gl_LocalInvocationIndex;
   uint rowCount = params.bucketCount * kClasses;
+  if (lane < 4u) shades[lane] = false;
   for (uint i = lane; i < rowCount; i += 256u) rowStart[i] = rows[rowAt(kRowTiles + i, gl_WorkGroupID.x)];
+  barrier();
   for (uint round = 0u; round < 4u; ++round) {
     uint triangle = gl_WorkGroupID.x * kAtlasGroup + round * 256u + lane;
     uint plan = triangle < params.maxTriangles ? plans[triangle] : 0u;
     bool shaded = (plan & kPlanShade) != 0u;
     uint class_ = max(planClass(plan), kMinClass);
     uint row = shaded ? bucketOf(triangle) * kClasses + class_ - kMinClass : 0u;
-    clearRanks(lane);
+    clearRanks(rowCount, lane);
+    if (shaded) shades[round] = true;
     ends[lane] = shaded ? 1u << tilesLog(class_) : 0u;
     barrier();
+    if (!shades[round]) continue;
     if (shaded) enterRank(row, lane);
     for (uint step_ = 1u; step_ < 256u; step_ *= 2u) {
       uint before = lane >= step_ ? ends[lane - step_] : 0u;
@@ -48,7 +53,7 @@ void main() {
         tiles[at] = uvec2(gl_WorkGroupID.x * kAtlasGroup + round * 256u + low, tile);
     }
     barrier();
-    advanceRanks(lane);
+    advanceRanks(rowCount, lane);
     barrier();
   }
 }
