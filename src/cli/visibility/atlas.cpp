@@ -8,12 +8,13 @@
 namespace gpgp::cli {
 namespace {
 
-/// One visible triangle in 64 less: between both, so many are new or gone.
+/// One visible triangle in 64 less, with the one that may share its block: between both, so many blocks are new or
+/// gone.
 std::vector<uint32_t> thinned(std::vector<uint32_t> bits) {
   uint32_t seen = 0;
   for (uint32_t& word : bits)
-    for (uint32_t rest = word; rest; rest &= rest - 1)
-      if (++seen % 64 == 0) word &= ~(rest & (0 - rest));
+    for (uint32_t pair = 3; pair; pair <<= 2)
+      if (word & pair && ++seen % 64 == 0) word &= ~pair;
   return bits;
 }
 

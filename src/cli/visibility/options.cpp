@@ -156,7 +156,7 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
                            .add_option_function<std::string>(
                                "--atlas", [&options](const std::string& text) { options.atlas = parseAtlas(text); },
                                "Allocates a shading atlas of N x N texels (or WxH) for what the first camera sees; of "
-                               "--repeat, every other time one visible triangle in 64 is left out")
+                               "--repeat, every other time one pair of triangles in 64 is left out")
                            ->type_name("N");
   command.add_option("--texels", options.texelsPerPixel, "Texels of the atlas for each pixel of a triangle's area")
       ->check(within(1.0 / 1024, 64.0))
