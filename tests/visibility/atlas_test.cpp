@@ -245,6 +245,25 @@ TEST_F(AtlasTest, GivesSuperblocksBack) {
   EXPECT_GT(vacated, 500u);
 }
 
+/// The most tiles that one workgroup can have: its loops are as long as they get.
+TEST_F(AtlasTest, ListsTheLargestBlocks) {
+  std::mt19937 random(1);
+  AtlasWorld world(1024, 4096, 4096, random);
+  world.findsPairs = false;
+  for (uint32_t t = 0; t < world.triangles; ++t) {
+    world.setVisible(t, true);
+    world.setSize(t, 1e5f, 500);
+  }
+  AtlasGpu gpu(*this, atlasRecorder(), world);
+  CpuAtlas atlas;
+  GpgpAtlasReport report;
+  const CpuAtlasResult found = gpu.step(world, report), expected = allocate(world.input(), atlas);
+  expectSame(world, found, expected, 0);
+  expectSound(world, expected, {});
+  EXPECT_EQ(report.tiles, 1u << 20);
+  EXPECT_EQ(report.fill, 1);
+}
+
 TEST(AtlasReference, BlocksStayInASteadyWalk) {
   std::mt19937 random(5);
   AtlasWorld world(40000, 2048, 2048, random);
