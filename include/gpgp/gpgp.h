@@ -1,6 +1,7 @@
 /* gpgp: the whole C API. Include one service's header instead where that is all you use. */
 #ifndef GPGP_H
 #define GPGP_H
+#include <gpgp/atlas.h>
 #include <gpgp/core.h>
 #include <gpgp/lsystem.h>
 #include <gpgp/spawn.h>

@@ -6,6 +6,7 @@
 #ifndef GPGP_HPP
 #define GPGP_HPP
 
+#include <gpgp/atlas.hpp>
 #include <gpgp/core.hpp>
 #include <gpgp/gpgp.h>
 #include <gpgp/lsystem.hpp>

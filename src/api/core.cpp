@@ -166,7 +166,7 @@ template <class Handle> void destroy(const char* function, Handle handle, Kind f
 
 GpgpResult GPGP_CALL gpgpPrewarm(GpgpRecorder handle, const GpgpPrewarmInfo* info) {
   return guarded("gpgpPrewarm", [&](Call& call) -> Result<void> {
-    const auto recorder = resolveAny<core::Recorder>(call, handle, Kind::spawner, Kind::visibilityRecorder, "recorder");
+    const auto recorder = resolveAny<core::Recorder>(call, handle, Kind::spawner, Kind::atlasRecorder, "recorder");
     if (!recorder) return recorder.error();
     if (info)
       if (auto ok = checkStruct(info, GPGP_STRUCTURE_PREWARM_INFO, "info"); !ok) return ok;
@@ -178,7 +178,7 @@ GpgpResult GPGP_CALL gpgpPrewarm(GpgpRecorder handle, const GpgpPrewarmInfo* inf
 GpgpResult GPGP_CALL gpgpGetScratchSize(GpgpRecorder handle, VkDeviceSize* size, VkDeviceSize* alignment,
                                         VkBufferUsageFlags* usage) {
   return guarded("gpgpGetScratchSize", [&](Call& call) -> Result<void> {
-    const auto recorder = resolveAny<core::Recorder>(call, handle, Kind::spawner, Kind::visibilityRecorder, "recorder");
+    const auto recorder = resolveAny<core::Recorder>(call, handle, Kind::spawner, Kind::atlasRecorder, "recorder");
     if (!recorder) return recorder.error();
     if (!size) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "size is NULL");
     *size = (*recorder)->scratchBytes();
@@ -190,7 +190,7 @@ GpgpResult GPGP_CALL gpgpGetScratchSize(GpgpRecorder handle, VkDeviceSize* size,
 
 GpgpResult GPGP_CALL gpgpGetPasses(GpgpRecorder handle, uint32_t* count, const char** names) {
   return guarded("gpgpGetPasses", [&](Call& call) -> Result<void> {
-    const auto recorder = resolveAny<core::Recorder>(call, handle, Kind::spawner, Kind::visibilityRecorder, "recorder");
+    const auto recorder = resolveAny<core::Recorder>(call, handle, Kind::spawner, Kind::atlasRecorder, "recorder");
     if (!recorder) return recorder.error();
     if (!count) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "count is NULL");
     const auto& passes = (*recorder)->passes().passes;
@@ -228,10 +228,10 @@ void GPGP_CALL gpgpDestroyAsset(GpgpAsset asset) {
   destroy("gpgpDestroyAsset", asset, Kind::grammar, Kind::geometrySet, "asset");
 }
 void GPGP_CALL gpgpDestroyRecorder(GpgpRecorder recorder) {
-  destroy("gpgpDestroyRecorder", recorder, Kind::spawner, Kind::visibilityRecorder, "recorder");
+  destroy("gpgpDestroyRecorder", recorder, Kind::spawner, Kind::atlasRecorder, "recorder");
 }
 void GPGP_CALL gpgpDestroyHistory(GpgpHistory history) {
-  destroy("gpgpDestroyHistory", history, Kind::canvasHistory, Kind::cameraHistory, "history");
+  destroy("gpgpDestroyHistory", history, Kind::canvasHistory, Kind::atlas, "history");
 }
 
 GpgpResult GPGP_CALL gpgpGetMemoryReport(GpgpContext handle, GpgpMemoryReport* report) {

@@ -33,6 +33,8 @@ const char* kindName(Kind kind) {
   case Kind::visibilityRecorder: return "visibility recorder";
   case Kind::canvasHistory: return "canvas history";
   case Kind::cameraHistory: return "camera history";
+  case Kind::atlasRecorder: return "shading atlas recorder";
+  case Kind::atlas: return "shading atlas";
   }
   return "unknown object";
 }

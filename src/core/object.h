@@ -21,8 +21,10 @@ enum class Kind : uint32_t {
   canvas,
   patchRecorder,
   visibilityRecorder,
+  atlasRecorder,
   canvasHistory,
   cameraHistory,
+  atlas,
   list
 };
 const char* kindName(Kind kind);

@@ -13,6 +13,7 @@ template <class T> constexpr bool isHandle() {
 static_assert(isHandle<gpgp::Context>() && isHandle<gpgp::Grammar>() && isHandle<gpgp::Spawner>());
 static_assert(isHandle<gpgp::Drawing>() && isHandle<gpgp::GlyphSet>() && isHandle<gpgp::Canvas>() &&
               isHandle<gpgp::CanvasHistory>() && isHandle<gpgp::List>());
+static_assert(isHandle<gpgp::Atlas>() && isHandle<gpgp::AtlasRecorder>());
 static_assert(isHandle<gpgp::GeometrySet>() && isHandle<gpgp::VisibilityRecorder>() && isHandle<gpgp::CameraHistory>());
 static_assert(isHandle<gpgp::GrammarBuilder>());
 static_assert(isHandle<gpgp::Font>() && isHandle<gpgp::Shaper>() && isHandle<gpgp::Layout>());
@@ -185,6 +186,16 @@ GpgpResult useVisibility(GpgpContext context, const GpgpFrame& frame, VkCommandB
   gpgpDestroyHistory(history->release());
   return report.name() ? report.code() : GPGP_SUCCESS;
 }
+
+GpgpResult useAtlas(GpgpContext context, const GpgpFrame& frame, VkCommandBuffer cmd) {
+  auto atlas = gpgp::Atlas::create(context, gpgp::init<GpgpAtlasCreateInfo>());
+  auto recorder = gpgp::AtlasRecorder::create(context, gpgp::init<GpgpAtlasRecorderCreateInfo>());
+  if (!atlas || !recorder) return atlas.code();
+  auto info = gpgp::init<GpgpAtlasInfo>();
+  info.atlas = *atlas;
+  if (const GpgpResult code = recorder->recordPrepare(cmd, frame, info)) return code;
+  return recorder->report().code();
+}
 } // namespace
 
 GpgpResult useEverything(const GpgpContextCreateInfo& info, VkCommandBuffer cmd);
@@ -199,5 +210,6 @@ GpgpResult useEverything(const GpgpContextCreateInfo& info, VkCommandBuffer cmd)
   if (const GpgpResult code = useGrammarBuilder()) return code;
   if (const GpgpResult code = useVector(*context, frame, cmd)) return code;
   if (const GpgpResult code = useText()) return code;
+  if (const GpgpResult code = useAtlas(*context, frame, cmd)) return code;
   return useVisibility(*context, frame, cmd);
 }

@@ -8,6 +8,7 @@ namespace gpgp::test {
 
 core::PassList canvasPasses(bool software);
 core::PassList visibilityPasses();
+core::PassList atlasPasses();
 core::PassList spawnPasses(bool vertices);
 /// The shader of the pass `derive` with colliders or without. subgroups: the device has subgroup arithmetic.
 core::ShaderDesc interpreterOf(bool software, bool subgroups, bool colliders);

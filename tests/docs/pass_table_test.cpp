@@ -119,13 +119,11 @@ std::string interpreters(const ShaderFiles& files) {
 std::string page() {
   const ShaderFiles files;
   return "# Passes\n\n"
-         "Each recorder describes its work once as a list of passes. From the list come barriers, scratch, debug "
-         "labels\n"
-         "and timestamps. These tables are made from the lists by `pass_table_test --write`, and the test fails where\n"
-         "they are out of date. Files lie below `shaders/`. Forms of a pass, of which a recording runs one, share a "
-         "row,\n"
-         "and so do passes of one file that use the same resources. What a pass does is in [spawn](spawn.md),\n"
-         "[vector](vector.md) and [visibility](visibility.md).\n\n"
+         "Each recorder has a list of passes. From it come barriers, scratch, debug labels and timestamps.\n"
+         "`pass_table_test --write` makes these tables, and the test fails if they are out of date. Files lie\n"
+         "below `shaders/`. Forms of a pass, of which a recording runs one, share a row, and so do passes of one\n"
+         "file with the same resources. What a pass does is in [spawn](spawn.md), [vector](vector.md),\n"
+         "[visibility](visibility.md) and [atlas](atlas.md).\n\n"
          "## Spawn\n\nOf ordered instances, with colliders:\n\n" +
          tableOf(test::spawnPasses(false), files) + "\nOf ordered vertices:\n\n" +
          tableOf(test::spawnPasses(true), files) +
@@ -133,7 +131,7 @@ std::string page() {
          interpreters(files) + "\n## Vector\n\n" + tableOf(test::canvasPasses(false), files) +
          "\n### On software devices\n\n" + tableOf(test::canvasPasses(true), files) +
          "\n## Visibility\n\nWith all methods. Without 64-bit atomics there are the passes `ids` as well.\n\n" +
-         tableOf(test::visibilityPasses(), files);
+         tableOf(test::visibilityPasses(), files) + "\n### Shading atlas\n\n" + tableOf(test::atlasPasses(), files);
 }
 } // namespace
 

@@ -1,4 +1,5 @@
 #include "pass_lists.h"
+#include "visibility/atlas/passes.h"
 #include "visibility/sampling/passes.h"
 
 namespace gpgp::test {
@@ -9,6 +10,11 @@ core::PassList visibilityPasses() {
                  GPGP_SAMPLING_NEARBY_BIT | GPGP_SAMPLING_REFERENCE_BIT;
   const core::Device device = deviceOf(false);
   return visibility::describePasses(visibility::Budgets(info, device.limits), device, std::pmr::get_default_resource());
+}
+
+core::PassList atlasPasses() {
+  const GpgpAtlasRecorderCreateInfo info = GPGP_ATLAS_RECORDER_CREATE_INFO_INIT;
+  return visibility::describeAtlasPasses(visibility::AtlasBudgets(info), std::pmr::get_default_resource());
 }
 
 } // namespace gpgp::test

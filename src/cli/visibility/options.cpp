@@ -18,6 +18,14 @@ void parseEpsilon(const std::string& text, VisibilityOptions& options) {
   options.epsilonDynamic = values[1];
 }
 
+/// "N" or "WxH", multiples of 128 up to 8192.
+Size parseAtlas(const std::string& text) {
+  const Size size = parseSize(text.find('x') == std::string::npos ? text + 'x' + text : text);
+  if (size.width % 128 || size.height % 128 || size.width > 8192 || size.height > 8192)
+    throw CLI::ValidationError("--atlas", "'" + text + "' is not N or WxH, multiples of 128 up to 8192");
+  return size;
+}
+
 /// Names of heuristics, or "none" alone.
 uint32_t parseHeuristics(const std::string& text) {
   if (text == "none") return 0;
@@ -145,6 +153,26 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
       .add_option("--image", options.image, "Write a picture: what the first camera sees, from there and from the side")
       ->check(pngFile())
       ->type_name("FILE.png");
+  CLI::Option* atlas = command
+                           .add_option_function<std::string>(
+                               "--atlas", [&options](const std::string& text) { options.atlas = parseAtlas(text); },
+                               "Allocates a shading atlas of N x N texels (or WxH) for what the first camera sees; of "
+                               "--repeat, every other time one pair of triangles in 64 is left out")
+                           ->type_name("N");
+  command.add_option("--texels", options.texelsPerPixel, "Texels of the atlas for each pixel of a triangle's area")
+      ->check(within(1.0 / 1024, 64.0))
+      ->capture_default_str()
+      ->needs(atlas);
+  command.add_option("--out", options.out, "Write the atlas, shaded with a pattern in world space")
+      ->check(pngFile())
+      ->type_name("FILE.png")
+      ->needs(atlas);
+  command
+      .add_option("--display", options.display,
+                  "Write what the first camera sees with the pattern from the atlas (left) and shaded directly (right)")
+      ->check(pngFile())
+      ->type_name("FILE.png")
+      ->needs(atlas);
   // What would have no effect is an error: who gives it expects one.
   command.callback([&options, conservative, samples, recheck] {
     for (const CLI::Option* option : conservative)
@@ -164,6 +192,7 @@ Examples:
   gpgp visibility bunny.obj --yaw 90 --image seen.png
   gpgp visibility engine.glb --size 1920x1080 --repeat 100 --json | jq .visible
   gpgp visibility engine.glb --method exact --orbit 8 --reference 64 --overlay seen.png
+  gpgp visibility engine.glb --method exact --atlas 4096 --repeat 100 --out atlas.png --display shown.png
 
 Without --camera and --orbit the camera looks at the middle of the model's bounding box from --yaw degrees around it (0:
 along -Z) and --pitch above, from far enough to see all of it. Camera k of --orbit N stands 360 k / N degrees around, from

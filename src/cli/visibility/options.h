@@ -7,13 +7,16 @@
 namespace gpgp::cli {
 
 struct VisibilityOptions {
-  std::string model, image, overlay, exportIds, camera, method = "standard", cell, referenceDevice = "gpu";
+  std::string model, image, overlay, exportIds, camera, out, display, method = "standard", cell,
+                                                                      referenceDevice = "gpu";
   Size size{1280, 720}, grid{1, 1};
   float yaw = 35, pitch = 20, distance = 2;
   uint32_t repeat = 1, orbit = 0, samples = 1, reference = 0, recheck = 256, refinements = 0;
   bool needlessSamples = false; ///< --samples for a method that decides at points of its own
   uint32_t heuristics = GPGP_HEURISTICS_DEFAULT;
   float epsilonStatic = 0.05f, epsilonDynamic = 0.05f, resolution = 1;
+  Size atlas;               ///< texels; 0: none
+  float texelsPerPixel = 1; ///< of the atlas
   bool twoSided = false;
   bool throughWalls = false; ///< view points of a cell behind geometry count as well
 

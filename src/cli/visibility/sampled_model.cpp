@@ -24,7 +24,22 @@ SampledModel::SampledModel(Session& session, const VisibilityOptions& options, c
   bits_ = host::Buffer(device, VkDeviceSize{words_} * 4, kStorage, host::Memory::device, "visible bits");
   sizes_ = host::Buffer(device, VkDeviceSize{model.triangleCount} * 4, kStorage, host::Memory::device, "pixel counts");
   list_ = host::Buffer(device, VkDeviceSize{model.triangleCount} * 4, kStorage, host::Memory::device, "visible list");
+  if (options.atlas.width)
+    triangleSizes_ = host::Buffer(device, VkDeviceSize{model.triangleCount} * sizeof(GpgpTriangleSize), kStorage,
+                                  host::Memory::device, "triangle sizes");
   count_ = host::Buffer(device, 16, kStorage, host::Memory::device, "visible count");
+}
+
+void SampledModel::describe(GpgpAtlasInfo& info, bool pairs) const {
+  info.triangleCount = model_.triangleCount;
+  info.visibleBits = bits_.range();
+  info.triangleSizes = triangleSizes_.range();
+  info.indexType = VK_INDEX_TYPE_UINT32;
+  if (!pairs) return;
+  info.geometrySet = geometry_;
+  info.draws = draws_.range();
+  info.drawCount = static_cast<uint32_t>(model_.draws.size());
+  info.indices = indices_.range();
 }
 
 VisibilityRecorder SampledModel::recorder(GpgpSamplingMethod method, uint32_t maxSamples) {
@@ -87,6 +102,7 @@ Measured<GpgpVisibilityReport> SampledModel::sample(VisibilityRecorder& recorder
                             info.triangleCount = model_.triangleCount;
                             info.visibleBits = bits_.range({}, after);
                             if (step.sizes) info.pixelCounts = sizes_.range({}, after);
+                            if (triangleSizes_.handle()) info.triangleSizes = triangleSizes_.range({}, after);
                             info.visibleList = list_.range({}, after);
                             info.visibleCount = count_.range({}, after);
                             return recorder.recordPrepare(commands, frame, info);

@@ -26,6 +26,8 @@ public:
   };
   Measured<GpgpVisibilityReport> sample(VisibilityRecorder& recorder, const Step& step);
   std::vector<uint32_t> bits() { return host::download<uint32_t>(session_.device(), bits_, words_); }
+  /// What an atlas recording needs of the last sampling; pairs: with draws and indices.
+  void describe(GpgpAtlasInfo& info, bool pairs) const;
   std::vector<uint32_t> sizes() { return host::download<uint32_t>(session_.device(), sizes_, model_.triangleCount); }
 
   /// How far what was found agrees with a reference; recheck may be empty.
@@ -45,6 +47,7 @@ private:
   uint32_t words_;
   GeometrySet geometry_;
   host::Buffer positions_, indices_, draws_, bits_, sizes_, list_, count_;
+  host::Buffer triangleSizes_; // with options.atlas
 };
 
 } // namespace gpgp::cli

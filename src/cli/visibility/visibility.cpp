@@ -1,6 +1,7 @@
 // `gpgp visibility`: samples which triangles of a model one camera sees.
 #include "cli/shared/command.h"
 #include "cli/shared/progress.h"
+#include "cli/visibility/atlas.h"
 #include "cli/visibility/camera_times.h"
 #include "cli/visibility/cell_walls.h"
 #include "cli/visibility/pictures.h"
@@ -110,6 +111,7 @@ struct Figures {
   uint32_t maxCandidates = 0, maxPairs = 0; ///< given
   uint32_t viewPoints = 0, behindWalls = 0; ///< of all cameras' cells; these were left out
   std::vector<uint32_t> found, first;       ///< of all cameras together; of the first one
+  std::optional<AtlasFigures> atlas;        ///< of the first one
 
   /// Metrics of one camera of `cameras`; areas of the reference's triangles, in samples.
   void addMetrics(const GpgpVisibilityReport& metrics, const std::vector<uint32_t>& areas, uint32_t cameras) {
@@ -185,6 +187,7 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
     progress.reset();
     const std::vector<uint32_t> found = scene.bits();
     figures.add(last, found, cameras);
+    if (k == 0 && options.atlas.width) figures.atlas = allocateAtlas(session, options, scene, model, corners, view);
 
     const bool overlay = !options.overlay.empty() && k == 0;
     std::vector<uint32_t> standard, reference;
@@ -253,6 +256,7 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
     text << (options.referenceDevice == "cpu" ? "reference by rays " : "reference ") << countText(figures.reference)
          << ": coverage " << figures.coverage.text() << ", overestimation " << figures.overestimation.text()
          << "; by area " << figures.coverageArea.text() << ", " << figures.overestimationArea.text() << '\n';
+  if (figures.atlas) text << textOf(options, *figures.atlas);
   text << remarks(model, figures);
   if (!options.image.empty())
     text << "picture: " << options.image << " (left: from the " << first << "camera; right: from the side)\n";
@@ -292,6 +296,7 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
                   {"notes", model.notes},
                   {"gpu_ms_median", figures.times.median},
                   {"passes", figures.times.passesByName()}};
+  if (figures.atlas) outcome.json["atlas"] = jsonOf(options, *figures.atlas);
   return outcome;
 }
 
@@ -313,7 +318,8 @@ Outcome visibility(const VisibilityOptions& options, const CommonOptions& common
                  session.device().properties().limits.maxStorageBufferRange);
     bounds = boundsOf(model);
   }
-  const bool paints = !options.image.empty() || !options.overlay.empty();
+  const bool paints =
+      !options.image.empty() || !options.overlay.empty() || !options.out.empty() || !options.display.empty();
   const std::vector<glm::vec3> corners = paints ? worldCorners(model) : std::vector<glm::vec3>();
   const Figures figures = measure(session, options, cell, model, bounds, corners);
   if (!options.exportIds.empty()) writeIds(options.exportIds, figures.found, model.triangleCount);

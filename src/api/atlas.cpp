@@ -1,0 +1,93 @@
+// The C functions of atlas.h.
+#include "api/check.h"
+#include "visibility/atlas/recorder.h"
+
+using namespace gpgp;
+using namespace gpgp::api;
+using namespace gpgp::visibility;
+
+namespace {
+Result<void> checkTriangles(uint32_t maxTriangles, const Context& context) {
+  if (maxTriangles > shader::kMaxAtlasTriangles)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTriangles is %u; at most %u", maxTriangles,
+                     shader::kMaxAtlasTriangles);
+  if (Atlas::bytesFor(maxTriangles) > context.device.limits.maxStorageBufferRange)
+    return makeError(GPGP_ERROR_UNSUPPORTED, "maxTriangles is %u, but this device binds at most %u bytes", maxTriangles,
+                     context.device.limits.maxStorageBufferRange);
+  return {};
+}
+} // namespace
+
+GpgpResult GPGP_CALL gpgpCreateAtlas(GpgpContext handle, const GpgpAtlasCreateInfo* info, GpgpHistory* atlas) {
+  return guarded("gpgpCreateAtlas", [&](Call& call) -> Result<void> {
+    const auto context = resolve(call, handle);
+    if (!context) return context.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_ATLAS_CREATE_INFO, "info"); !ok) return ok;
+    if (!atlas) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "atlas is NULL");
+    if (info->width % shader::kSuperSide || info->height % shader::kSuperSide || info->width > 8192 ||
+        info->height > 8192)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "width x height is %u x %u; expected multiples of %u up to 8192",
+                       info->width, info->height, shader::kSuperSide);
+    if (auto ok = checkTriangles(info->maxTriangles, **context); !ok) return ok;
+    if (auto ok = (*context)->checkAlive(); !ok) return ok;
+    auto made = Atlas::create(**context, *info);
+    if (!made) return made.error();
+    *atlas = adopt<GpgpHistory>(**context, std::move(*made));
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpCreateAtlasRecorder(GpgpContext handle, const GpgpAtlasRecorderCreateInfo* info,
+                                             GpgpRecorder* recorder) {
+  return guarded("gpgpCreateAtlasRecorder", [&](Call& call) -> Result<void> {
+    const auto context = resolve(call, handle);
+    if (!context) return context.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_ATLAS_RECORDER_CREATE_INFO, "info"); !ok) return ok;
+    if (!recorder) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "recorder is NULL");
+    if (auto ok = checkTriangles(info->maxTriangles, **context); !ok) return ok;
+    if (info->maxBuckets > shader::kMaxBuckets)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxBuckets is %u; at most %u", info->maxBuckets,
+                       shader::kMaxBuckets);
+    if (auto ok = (*context)->checkAlive(); !ok) return ok;
+    auto made = AtlasRecorder::create(**context, *info);
+    if (!made) return made.error();
+    *recorder = adopt<GpgpRecorder>(**context, std::move(*made));
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpRecordPrepareAtlas(GpgpRecorder handle, VkCommandBuffer commandBuffer, const GpgpFrame* frame,
+                                            const GpgpAtlasInfo* info) {
+  return guarded("gpgpRecordPrepareAtlas", [&](Call& call) -> Result<void> {
+    const auto recorder = resolve<AtlasRecorder>(call, handle, Kind::atlasRecorder, "recorder");
+    if (!recorder) return recorder.error();
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_ATLAS_INFO, "info"); !ok) return ok;
+    const core::Context& context = (*recorder)->context;
+    const auto atlas = resolve<Atlas>(call, info->atlas, Kind::atlas, "atlas", &context);
+    if (!atlas) return atlas.error();
+    GeometrySet* geometry = nullptr;
+    if (info->geometrySet || info->drawCount) {
+      const auto resolved = resolve<GeometrySet>(call, info->geometrySet, Kind::geometrySet, "geometrySet", &context);
+      if (!resolved) return resolved.error();
+      geometry = *resolved;
+    }
+    const core::RecorderUse use(**recorder);
+    if (!use) return core::RecorderUse::error();
+    if (auto ok = checkRecord(**recorder, frame); !ok) return ok;
+    if (!(*atlas)->resident()) return makeError(GPGP_NOT_READY, "atlas is not resident");
+    if (geometry && !geometry->resident()) return makeError(GPGP_NOT_READY, "geometrySet is not resident");
+    return (*recorder)->prepare(commandBuffer, *info, **atlas, geometry);
+  });
+}
+
+GpgpResult GPGP_CALL gpgpGetAtlasReport(GpgpRecorder handle, GpgpAtlasReport* report) {
+  return guarded("gpgpGetAtlasReport", [&](Call& call) -> Result<void> {
+    const auto recorder = resolve<AtlasRecorder>(call, handle, Kind::atlasRecorder, "recorder");
+    if (!recorder) return recorder.error();
+    if (auto ok = checkStruct(report, GPGP_STRUCTURE_ATLAS_REPORT, "report"); !ok) return ok;
+    const core::RecorderUse use(**recorder);
+    if (!use) return core::RecorderUse::error();
+    if (!(*recorder)->takeAtlasReport(*report)) return noReport();
+    return {};
+  });
+}
