@@ -41,14 +41,14 @@ installMissing() {
   rm -f "$log"
 }
 
-# configure PRESET [-D...]: through ccache where that is installed.
+# configure PRESET [-D...]: through ccache where that is installed, with precompiled headers elsewhere.
 configure() {
   local preset=$1
   shift
-  local cache=() log
+  local cache=(-DGPGP_PRECOMPILED_HEADERS=ON) log
   log=$(mktemp)
   if command -v ccache >/dev/null; then
-    cache=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+    cache=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DGPGP_PRECOMPILED_HEADERS=OFF)
   fi
   cmake --preset "$preset" "${cache[@]}" "$@" >"$log" 2>&1 || {
     cat "$log" >&2

@@ -4,12 +4,17 @@
 #
 # SOURCE is a path below shaders/, or an absolute one. The header is included as "shaders/NAME.spv.h" and defines
 # `static const uint32_t NAME[]`. A shader that does not validate fails the build.
+set(GPGP_SHADERS_FROM "" CACHE PATH "generated/ of another build of the same sources, whose shaders are taken; for tests")
 find_program(GPGP_GLSLANG glslangValidator REQUIRED)
 find_program(GPGP_SPIRV_VAL spirv-val REQUIRED)
 
 function(gpgp_add_shader target name source)
   cmake_parse_arguments(arg "" "" "DEFINES" ${ARGN})
   set_property(GLOBAL APPEND_STRING PROPERTY gpgp_shader_files "${name} ${source}\n") # for tests/docs
+  if(GPGP_SHADERS_FROM)
+    target_include_directories(${target} PRIVATE ${GPGP_SHADERS_FROM})
+    return()
+  endif()
   cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${PROJECT_SOURCE_DIR}/shaders)
   set(dir ${PROJECT_BINARY_DIR}/generated/shaders)
   file(MAKE_DIRECTORY ${dir})

@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Builds and runs a project that has gpgp as a subdirectory, with the services given and no other; the libraries must
-# have the functions of those services and of no other. No optimisation: what counts is that it builds and links.
+# have the functions of those services and of no other. No optimisation: what counts is that it builds and links. The
+# services' shaders are those in SHADERS, which the build under test has compiled; the core alone compiles its own.
 #
-#   subdirectory_test.sh SOURCE_DIR SCRATCH_DIR TEST_DIR CMAKE CC CXX NM [--compiler] SERVICE...
+#   subdirectory_test.sh SOURCE_DIR SCRATCH_DIR TEST_DIR CMAKE CC CXX NM SHADERS [--compiler] SERVICE...
 set -euo pipefail
-source=$1 scratch=$2 tests=$3 cmake=$4 cc=$5 cxx=$6 nm=$7
-shift 7
+source=$1 scratch=$2 tests=$3 cmake=$4 cc=$5 cxx=$6 nm=$7 shaders=$8
+shift 8
 options=(-DGPGP_BUILD_SHARED=OFF -DGPGP_WITH_TEXT=OFF)
+if (($#)); then options+=("-DGPGP_SHADERS_FROM=$shaders"); fi
 if command -v ccache >/dev/null; then
   options+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 fi
