@@ -1,6 +1,5 @@
 #include "cli/bake/font.h"
 
-#include "cli/shared/command.h"
 #include "cli/text/glyphs.h"
 #include "host/files.h"
 

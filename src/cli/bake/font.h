@@ -1,6 +1,6 @@
 // A font's glyphs, or those that chosen characters need, to their baked form.
 #pragma once
-#include "cli/shared/common.h"
+#include "cli/shared/command.h"
 
 #include <gpgp/gpgp.hpp>
 

@@ -1,5 +1,6 @@
 #include "cli/visibility/atlas.h"
 
+#include "cli/shared/command.h"
 #include "cli/shared/progress.h"
 #include "cli/visibility/atlas_picture.h"
 
