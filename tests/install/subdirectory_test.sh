@@ -27,8 +27,9 @@ done
   -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" "${options[@]}"
 "$cmake" --build "$scratch"
 "$scratch/consumer"
-if [[ " $* " == *" spawn "* ]]; then set -- "$@" spawn_builder; fi # services in two headers
+if [[ " $* " == *" spawn "* ]]; then set -- "$@" spawn_builder lsystem; fi # services in several headers
 if [[ " $* " == *" vector "* ]]; then set -- "$@" ui; fi
+if [[ " $* " == *" visibility "* ]]; then set -- "$@" atlas; fi
 symbols=("$tests/../abi/symbols_test.sh" "$nm" "$source/include" "$tests/../abi")
 "${symbols[@]}" run-time "$scratch/gpgp/src/libgpgp.a" core "$@"
 if [[ $compiler == ON ]]; then "${symbols[@]}" compiler "$scratch/gpgp/src/libgpgp_compiler.a" core "$@"; fi
