@@ -210,8 +210,8 @@ typedef struct GpgpSvgGlyph {
   VkBool32 incomplete; /**< VK_TRUE: a part of the glyph, such as an image, is not among the paths */
 } GpgpSvgGlyph;
 typedef void(GPGP_CALL* GpgpSvgGlyphFn)(void* glyphUserData, const GpgpSvgGlyph* glyph);
-/** Shapes a line, and calls glyphFn for each of its glyphs from left to right. Anything but SUCCESS leaves the line
- *  out, which is said. */
+/** Shapes a line, and calls glyphFn for each of its glyphs from left to right. Any other result than SUCCESS leaves
+ *  the line out, and a warning says so. */
 typedef GpgpResult(GPGP_CALL* GpgpSvgTextFn)(void* userData, const GpgpSvgText* text, GpgpSvgGlyphFn glyphFn,
                                              void* glyphUserData);
 

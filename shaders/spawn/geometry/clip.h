@@ -340,10 +340,8 @@ GPGP_FN void sortBridges(GPGP_POOL Builder b, PlaneBasis basis, uint caps, uint 
       setWorkWord(GPGP_P sortedAt + 2u * at + 1u, workWord(GPGP_P sortedAt + 2u * child + 1u));
       at = child;
     }
-    if (end > 0u || making) {
-      setWorkFloat(GPGP_P sortedAt + 2u * at, place);
-      setWorkWord(GPGP_P sortedAt + 2u * at + 1u, bridge);
-    }
+    setWorkFloat(GPGP_P sortedAt + 2u * at, place);
+    setWorkWord(GPGP_P sortedAt + 2u * at + 1u, bridge);
   }
 }
 /// The first of the sorted bridges whose place is not below that.

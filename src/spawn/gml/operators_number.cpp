@@ -138,13 +138,7 @@ std::optional<Number> combined(Machine& m, uint32_t op, const Number& a, const N
     return std::nullopt;
   }
   if (!a.formula && !b.formula && op != kCodeRandom) {
-    const double x = a.known, y = b.known;
-    const double exact = op == kCodeAdd        ? x + y
-                         : op == kCodeSubtract ? x - y
-                         : op == kCodeMultiply ? x * y
-                         : op == kCodeDivide   ? x / y
-                                               : 0;
-    if (std::abs(exact) > double(kLargest)) {
+    if (!staysUsable(op, a.known, b.known)) {
       m.fail(std::string("this becomes too large; ") + kUsableNumbers);
       return std::nullopt;
     }

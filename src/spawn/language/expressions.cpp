@@ -24,6 +24,14 @@ bool isWhole(const Expression& e) {
 } // namespace
 
 bool isUsable(float value) { return std::abs(value) <= kLargest; } // no NaN is
+bool staysUsable(uint32_t op, double a, double b) {
+  const double exact = op == kCodeAdd        ? a + b
+                       : op == kCodeSubtract ? a - b
+                       : op == kCodeMultiply ? a * b
+                       : op == kCodeDivide   ? a / b
+                                             : 0;
+  return !(std::abs(exact) > double(kLargest));
+}
 
 std::optional<uint32_t> axisOf(const Expression& expression, Diagnostics& diagnostics) {
   if (expression.kind == ExpressionKind::name) {
@@ -66,13 +74,7 @@ ExpressionCompiler::Code ExpressionCompiler::attribute(const Expression& express
 }
 
 float ExpressionCompiler::fold(Place place, uint32_t op, float left, float right) {
-  const double a = left, b = right;
-  const double exact = op == kCodeAdd        ? a + b
-                       : op == kCodeSubtract ? a - b
-                       : op == kCodeMultiply ? a * b
-                       : op == kCodeDivide   ? a / b
-                                             : 0;
-  if (std::abs(exact) > double(kLargest)) {
+  if (!staysUsable(op, left, right)) {
     diagnostics_.error(place, std::string("this becomes too large; ") + kUsableNumbers);
     return 0;
   }

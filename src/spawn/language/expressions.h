@@ -9,6 +9,8 @@ namespace gpgp::spawn {
 
 /// Of the numbers that a grammar can have.
 bool isUsable(float value);
+/// Whether a sum, difference, product or quotient is of those, before it is rounded.
+bool staysUsable(uint32_t op, double a, double b);
 constexpr const char* kUsableNumbers = "numbers go up to 2^100, which is 1.2676506e30";
 
 class ExpressionCompiler {

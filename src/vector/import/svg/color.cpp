@@ -267,6 +267,7 @@ bool parseColor(std::string_view text, Color& color) {
   return true;
 }
 
+double srgbFromLinear(double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055; }
 double linearFromSrgb(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
 
 } // namespace gpgp::vector::svg

@@ -9,7 +9,6 @@
 namespace gpgp::vector::svg {
 namespace {
 
-constexpr std::string_view kShapes[] = {"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"};
 constexpr std::string_view kMarked[] = {"path", "line", "polyline", "polygon"}; ///< the shapes that have markers
 /// Drawn only where something refers to them, or never.
 constexpr std::string_view kSilent[] = {
@@ -91,23 +90,29 @@ core::Result<Imported> Importer::run() {
   return std::move(result_);
 }
 
-void Importer::visit(pugi::xml_node node, const State& parent, const double* useSize) {
-  const std::string_view name = document_.name(node);
-  if (name.empty() || stopped(node) || !isFor(node)) return;
-  const bool isSymbol = name == "symbol" && useSize;
-  if (oneOf(name, kSilent) && !isSymbol) return;
+std::optional<Importer::State> Importer::enter(pugi::xml_node node, const State& parent) {
   if (parent.depth >= limits_.depth) {
     reporter_.error(document_.place(node),
                     "elements are nested deeper than " + std::to_string(limits_.depth) +
                         "; what is inside is not drawn",
                     GPGP_ERROR_UNSUPPORTED);
-    return;
+    return std::nullopt;
   }
   State state = parent;
   state.style = parent.style.inherited();
   ++state.depth;
   cascade(node, parent.style, parent.lengths, state.style);
-  if (!state.style.displayed) return;
+  return state.style.displayed ? std::optional(std::move(state)) : std::nullopt;
+}
+
+void Importer::visit(pugi::xml_node node, const State& parent, const double* useSize) {
+  const std::string_view name = document_.name(node);
+  if (name.empty() || stopped(node) || !isFor(node)) return;
+  const bool isSymbol = name == "symbol" && useSize;
+  if (oneOf(name, kSilent) && !isSymbol) return;
+  std::optional<State> entered = enter(node, parent);
+  if (!entered) return;
+  State& state = *entered;
   state.transform = state.transform * transformOf(node, state.style, parent.lengths);
   if (!state.transform.finite()) {
     reporter_.error(document_.place(node), element(node) + " has a transform beyond all numbers; not drawn");

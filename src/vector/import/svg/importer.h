@@ -42,6 +42,7 @@ Affine inverseOf(const Affine& m);
 /// "#id" of url(#id), with or without quotes; empty where it is something else.
 std::string referenceOf(std::string_view text);
 
+inline constexpr std::string_view kShapes[] = {"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"};
 inline constexpr std::string_view kGradients[] = {"linearGradient", "radialGradient"};
 
 class Importer {
@@ -100,6 +101,8 @@ private:
   void parseSheet(std::string_view text, std::string_view folder, const Place& place, size_t depth);
 
   // importer.cpp
+  /// The state inside an element, with its style; nothing where it is not displayed, or nested too deep, which is said.
+  std::optional<State> enter(pugi::xml_node node, const State& parent);
   void visit(pugi::xml_node node, const State& parent, const double* useSize = nullptr);
   void visitChildren(pugi::xml_node node, const State& state);
   void visitUse(pugi::xml_node node, const State& state);

@@ -18,6 +18,7 @@ struct Color {
 };
 bool parseColor(std::string_view text, Color& color);
 double linearFromSrgb(double value);
+double srgbFromLinear(double value);
 
 struct Paint {
   enum class Kind { None, Solid, Current, Reference, ContextFill, ContextStroke };

@@ -149,18 +149,9 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
       reporter_.warn(document_.place(child), this->element(child) + " is not supported");
       continue;
     }
-    if (state.depth >= limits_.depth) {
-      reporter_.error(document_.place(child),
-                      "elements are nested deeper than " + std::to_string(limits_.depth) +
-                          "; what is inside is not drawn",
-                      GPGP_ERROR_UNSUPPORTED);
-      continue;
-    }
-    State inner = state;
-    inner.style = state.style.inherited();
-    ++inner.depth;
-    cascade(child, state.style, state.lengths, inner.style);
-    if (!inner.style.displayed || !isFor(child)) continue;
+    std::optional<State> entered = enter(child, state);
+    if (!entered || !isFor(child)) continue;
+    State& inner = *entered;
     inner.opacity *= inner.style.opacity;
     reportUnsupported(child, name, inner.style);
     if (!inner.style.clipPath.empty())
@@ -183,8 +174,7 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
       const std::string_view href = trim(hrefOf(child).value());
       const pugi::xml_node target = document_.find(href);
       const std::string_view kind = target ? document_.name(target) : std::string_view();
-      constexpr std::string_view shapes[] = {"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"};
-      if (!oneOf(kind, shapes)) {
+      if (!oneOf(kind, kShapes)) {
         reporter_.ignored(document_.place(child), "<textPath> refers to '" + std::string(href.substr(0, 60)) +
                                                       "', which is no shape of this file; it is not drawn");
         continue;
@@ -295,10 +285,7 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
           const GpgpPath& path = glyph->paths[i];
           Text::Part part{shapeOfGlyph(path), !glyph->foreground || glyph->foreground[i], {}};
           into.incomplete |= !part.isForeground && path.gradient;
-          const auto encoded = [](float v) {
-            const double c = static_cast<double>(v);
-            return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
-          };
+          const auto encoded = [](float v) { return srgbFromLinear(static_cast<double>(v)); };
           part.color = {encoded(path.color[0]), encoded(path.color[1]), encoded(path.color[2]),
                         static_cast<double>(path.color[3])};
           made.parts.push_back(std::move(part));
