@@ -11,7 +11,7 @@ clang_tidy=${CLANG_TIDY:-$(command -v clang-tidy-14 || command -v clang-tidy)}
 # What the other compiler is told that clang does not know: its precompiled headers, a warning.
 commands=$(mktemp -d)
 trap 'rm -rf "$commands"' EXIT
-sed -E 's/ -Winvalid-pch//g; s/ -include [^ ]*cmake_pch\.hxx//g; s/ -Wno-restrict//g' "$build/compile_commands.json" \
+sed -E 's/ -Winvalid-pch//g; s/ -include [^ ]*cmake_pch\.hxx//g; s/ -Wno-(restrict|stringop-over(flow|read))//g' "$build/compile_commands.json" \
   >"$commands/compile_commands.json"
 options=(-p "$commands" --quiet)
 if [[ ${2:-} == --all ]]; then
