@@ -11,6 +11,8 @@ options=(-DGPGP_BUILD_SHARED=OFF -DGPGP_WITH_TEXT=OFF)
 if (($#)); then options+=("-DGPGP_SHADERS_FROM=$shaders"); fi
 if command -v ccache >/dev/null; then
   options+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+else
+  options+=(-DGPGP_PRECOMPILED_HEADERS=ON)
 fi
 compiler=OFF
 if [[ ${1:-} == --compiler ]]; then
