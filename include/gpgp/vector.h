@@ -22,6 +22,7 @@
 #ifndef GPGP_VECTOR_H
 #define GPGP_VECTOR_H
 #include <gpgp/core.h>
+#include <gpgp/layers.h>
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -148,6 +149,7 @@ typedef struct GpgpPathGroup {
   /** The group shows only inside the union of these paths, which themselves paint nothing. NULL: no clip. */
   const GpgpPath* clip;
   uint32_t clipCount; /**< 0 while `clip` is not NULL: the group is hidden. */
+  const GpgpLayer* layer; /**< Blend mode, mask, filter (layers.h). NULL: none. */
 } GpgpPathGroup;
 
 /** What a drawing or a glyph set keeps on the device, by who draws it. A combination of flags. */
