@@ -37,7 +37,7 @@ struct FiltersTest : LayersTest {
     std::copy_n(region, 4, layer.filterRegion);
     const uint32_t group = scene.group(0, 1, &layer);
     for (const auto& [b, color] : boxes())
-      scene.add(rectangle(float(b[0]), float(b[1]), float(b[2]), float(b[3]), color), group);
+      scene.add(solid(float(b[0]), float(b[1]), float(b[2]), float(b[3]), color), group);
     const auto pixels = draw(scene, kSize);
     for (int y = 0; y < int(kSize); ++y)
       for (int x = 0; x < int(kSize); ++x)
@@ -127,8 +127,8 @@ TEST_F(FiltersTest, GroupsShowInFilters) {
   shown.group = 2;
   const GpgpLayer layer = scene.filter({shown});
   const uint32_t group = scene.group(0, 1, &layer), other = scene.group();
-  scene.add(rectangle(0, 0, 8, 8), group);
-  scene.add(rectangle(4, 4, 12, 16, {1, 0, 0, 1}), other);
+  scene.add(solid(0, 0, 8, 8), group);
+  scene.add(solid(4, 4, 12, 16, {1, 0, 0, 1}), other);
   const auto pixels = draw(scene, kSize);
   for (int y = 0; y < int(kSize); ++y)
     for (int x = 0; x < int(kSize); ++x) {

@@ -6,7 +6,7 @@ namespace gpgp::test {
 
 inline constexpr float kAll[4] = {-1e5f, -1e5f, 1e5f, 1e5f};
 
-inline TestPath rectangle(float left, float top, float right, float bottom, std::array<float, 4> color = {1, 1, 1, 1}) {
+inline TestPath solid(float left, float top, float right, float bottom, std::array<float, 4> color = {1, 1, 1, 1}) {
   TestPath path;
   path.move(left, top).line(right, top).line(right, bottom).line(left, bottom).close();
   path.color = color;

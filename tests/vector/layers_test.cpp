@@ -1,6 +1,7 @@
 // Layers on the canvas: blend modes, masks, clips and filters against closed forms; plans that must not change what is
 // drawn; order, budgets and errors.
 #include "layers_fixture.h"
+#include "ui_fixture.h"
 
 #include <functional>
 
@@ -91,11 +92,11 @@ TEST_F(LayersTest, BlendModesAreTheirFormulas) {
       {0.8f, 0.3f, 0.1f, 1}, {0.4f, 0.9f, 0.6f, 0.5f}, {1, 0, 0.5f, 1}, {0.5f, 0.5f, 0.5f, 0.25f}};
   for (int mode = GPGP_BLEND_NORMAL; mode <= GPGP_BLEND_PLUS_LIGHTER; ++mode) {
     Scene scene;
-    for (int b = 0; b < 4; ++b) scene.add(rectangle(0, float(b * 16), 64, float(b * 16 + 16), kBackdrops[b]));
+    for (int b = 0; b < 4; ++b) scene.add(solid(0, float(b * 16), 64, float(b * 16 + 16), kBackdrops[b]));
     GpgpLayer layer = plainLayer();
     layer.blend = mode;
     const uint32_t group = scene.group(0, 1, &layer);
-    for (int s = 0; s < 4; ++s) scene.add(rectangle(float(s * 16), 0, float(s * 16 + 16), 64, kSources[s]), group);
+    for (int s = 0; s < 4; ++s) scene.add(solid(float(s * 16), 0, float(s * 16 + 16), 64, kSources[s]), group);
     const auto pixels = draw(scene, 64);
     for (size_t b = 0; b < 4; ++b)
       for (size_t s = 0; s < 4; ++s) {
@@ -116,10 +117,10 @@ TEST_F(LayersTest, MasksTakeLuminanceOrAlpha) {
     layer.mask = 2;
     layer.maskKind = kind;
     const uint32_t group = scene.group(0, 0.5f, &layer), mask = scene.group();
-    scene.add(rectangle(0, 0, 64, 64, {0, 0, 1, 1}));
-    scene.add(rectangle(0, 0, 64, 64, {1, 0.5f, 0, 1}), group);
-    scene.add(rectangle(8, 0, 32, 64, {0, 1, 0, 1}), mask);
-    scene.add(rectangle(32, 0, 64, 64, {1, 1, 1, 0.25f}), mask);
+    scene.add(solid(0, 0, 64, 64, {0, 0, 1, 1}));
+    scene.add(solid(0, 0, 64, 64, {1, 0.5f, 0, 1}), group);
+    scene.add(solid(8, 0, 32, 64, {0, 1, 0, 1}), mask);
+    scene.add(solid(32, 0, 64, 64, {1, 1, 1, 0.25f}), mask);
     const auto pixels = draw(scene, 64);
     const double left = kind == GPGP_MASK_ALPHA ? 1 : 0.7152, right = 0.25;
     const auto want = [](double m) { return std::array<double, 4>{0.5 * m, 0.25 * m, 1 - 0.5 * m, 1}; };
@@ -137,9 +138,9 @@ TEST_F(LayersTest, MaskRegionsAndClipsCutLayers) {
   layer.maskRegion[0] = 0.125f, layer.maskRegion[1] = 0.25f, layer.maskRegion[2] = 0.5f, layer.maskRegion[3] = 1;
   layer.maskTransform[0] = layer.maskTransform[3] = 64;
   const uint32_t group = scene.group(0, 1, &layer), mask = scene.group();
-  scene.clip(group, rectangle(0, 0, 24.5f, 64));
-  scene.add(rectangle(0, 0, 64, 64, {1, 0, 0, 1}), group);
-  scene.add(rectangle(0, 0, 64, 64, {1, 1, 1, 1}), mask);
+  scene.clip(group, solid(0, 0, 24.5f, 64));
+  scene.add(solid(0, 0, 64, 64, {1, 0, 0, 1}), group);
+  scene.add(solid(0, 0, 64, 64, {1, 1, 1, 1}), mask);
   const auto pixels = draw(scene, 64);
   for (uint32_t y = 0; y < 64; ++y)
     for (uint32_t x = 0; x < 64; ++x) {
@@ -153,8 +154,8 @@ TEST_F(LayersTest, OpacitiesAreAsDeepAsLayersAre) {
   Scene scene;
   uint32_t group = 0;
   for (int i = 0; i < 12; ++i) group = scene.group(group, 0.9f);
-  scene.add(rectangle(0, 0, 32, 32, {1, 0, 0, 1}), group);
-  scene.add(rectangle(16, 0, 48, 32, {0, 1, 0, 1}), group);
+  scene.add(solid(0, 0, 32, 32, {1, 0, 0, 1}), group);
+  scene.add(solid(16, 0, 48, 32, {0, 1, 0, 1}), group);
   const auto pixels = draw(scene, 64);
   const double faded = std::pow(0.9, 12);
   expectNear(pixels[8 * 64 + 8], {faded, 0, 0, faded}, 2e-3, "left");
@@ -211,7 +212,7 @@ TEST_F(LayersTest, ABlurredEdgeIsTheErrorFunction) {
       Scene scene;
       const GpgpLayer layer = scene.filter({step(GPGP_FILTER_GAUSSIAN_BLUR, {deviation, deviation})});
       const uint32_t group = scene.group(0, 1, &layer);
-      scene.add(upright ? rectangle(-3000, -3000, 3000, 100) : rectangle(-3000, -3000, 100, 3000), group);
+      scene.add(upright ? solid(-3000, -3000, 3000, 100) : solid(-3000, -3000, 100, 3000), group);
       const auto pixels = draw(scene, 200);
       for (uint32_t i = 0; i < 200; ++i) {
         const double want = cumulative((100 - (i + 0.5)) / static_cast<double>(deviation));
@@ -259,7 +260,7 @@ TEST_F(LayersTest, ADropShadowLiesBehind) {
   GpgpFilterStep shadow = step(GPGP_FILTER_DROP_SHADOW, {3, 3, 10, 5, 0, 0, 1, 0.5f});
   const GpgpLayer layer = scene.filter({shadow});
   const uint32_t group = scene.group(0, 1, &layer);
-  scene.add(rectangle(20, 20, 60, 60, {1, 0, 0, 1}), group);
+  scene.add(solid(20, 20, 60, 60, {1, 0, 0, 1}), group);
   const auto pixels = draw(scene, 100);
   for (uint32_t y = 0; y < 100; ++y)
     for (uint32_t x = 0; x < 100; ++x) {
@@ -279,7 +280,7 @@ TEST_F(LayersTest, ColourFiltersAreTheirFormulas) {
   const auto run = [&](std::vector<GpgpFilterStep> steps) {
     Scene scene;
     const GpgpLayer layer = scene.filter(std::move(steps));
-    scene.add(rectangle(0, 0, 32, 32, {0.8f, 0.3f, 0.1f, 0.5f}), scene.group(0, 1, &layer));
+    scene.add(solid(0, 0, 32, 32, {0.8f, 0.3f, 0.1f, 0.5f}), scene.group(0, 1, &layer));
     return draw(scene, 32)[16 * 32 + 16];
   };
   const std::vector<float> matrix = {0.5f, 0.25f, 0, 0, 0.1f, 0, 2,    0, 0.2f, 0,
@@ -340,8 +341,8 @@ TEST_F(LayersTest, ItemsComeInOrder) {
   makeLayerCanvas();
   Scene scene, plain;
   const GpgpLayer layer = scene.filter({step(GPGP_FILTER_OFFSET, {4, 0})});
-  scene.add(rectangle(0, 8, 64, 24, {0, 1, 0, 1}), scene.group(0, 1, &layer));
-  plain.add(rectangle(8, 0, 24, 64, {1, 0, 0, 1}));
+  scene.add(solid(0, 8, 64, 24, {0, 1, 0, 1}), scene.group(0, 1, &layer));
+  plain.add(solid(8, 0, 24, 64, {1, 0, 0, 1}));
   const GpgpAsset layered = makeDrawing(scene.paths(), scene.groups), other = makeDrawing(plain.paths());
   std::vector<GpgpCanvasItem> items = {place(other), place(layered), place(other, 1, 20), place(layered, 1, 0, 20),
                                        place(other, 1, 30)};
@@ -360,8 +361,8 @@ TEST_F(LayersTest, ItemsComeInOrder) {
 TEST_F(LayersTest, WhatFindsNoRoomIsLeftOutAndCounted) {
   Scene scene, plain;
   const GpgpLayer layer = scene.filter({step(GPGP_FILTER_GAUSSIAN_BLUR, {4, 4})});
-  scene.add(rectangle(0, 8, 64, 24, {0, 1, 0, 1}), scene.group(0, 1, &layer));
-  plain.add(rectangle(8, 0, 24, 64, {1, 0, 0, 1}));
+  scene.add(solid(0, 8, 64, 24, {0, 1, 0, 1}), scene.group(0, 1, &layer));
+  plain.add(solid(8, 0, 24, 64, {1, 0, 0, 1}));
   const GpgpAsset layered = makeDrawing(scene.paths(), scene.groups), other = makeDrawing(plain.paths());
   const std::vector<GpgpCanvasItem> items = {place(other), place(layered), place(other, 1, 30)};
   GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
@@ -395,6 +396,39 @@ TEST_F(LayersTest, WhatFindsNoRoomIsLeftOutAndCounted) {
   gpgpDestroyAsset(other);
 }
 
+TEST_F(LayersTest, ListsShowThem) {
+  makeLayerCanvas();
+  Scene scene;
+  const GpgpLayer layer = scene.filter({step(GPGP_FILTER_OFFSET, {4, 0})});
+  scene.add(solid(0, 8, 40, 24, {0, 1, 0, 1}), scene.group(0, 1, &layer));
+  const GpgpAsset layered = makeDrawing(scene.paths(), scene.groups);
+  TestList list(context);
+  list.add(rectangle(0, 0, 64, 64, {1, 0, 0, 1})).push({1, 0, 0, 1, 8, 0, 0, 0, 0}).add(layered).pop();
+  list.add(rectangle(20, 0, 28, 64, {0, 0, 1, 1}));
+  GpgpCanvasItem item = list.item();
+  item.scissor[2] = 40, item.scissor[3] = 64;
+  const auto pixels = raster({item}, 64, 64, 16);
+  const auto at = [&](uint32_t x) { return pixels[16 * 64 + x]; };
+  expectNear(at(11), {1, 0, 0, 1}, 1e-3, "before the layer, which is moved by both");
+  expectNear(at(13), {0, 1, 0, 1}, 1e-3, "the layer");
+  expectNear(at(24), {0, 0, 1, 1}, 1e-3, "in front of it");
+  expectNear(at(39), {0, 1, 0, 1}, 1e-3, "up to the scissor");
+  expectNear(at(41), {0, 0, 0, 0}, 1e-3, "beyond it");
+
+  list.reset().group(0.5f).add(layered).pop();
+  const std::vector<GpgpCanvasItem> items = {list.item()};
+  const host::Image image(device, {.format = VK_FORMAT_R16G16B16A16_SFLOAT, .width = 64, .height = 64});
+  const GpgpFrame frame = advance();
+  device.submitAndWait([&](VkCommandBuffer commands) {
+    GpgpCanvasInfo info = infoOf(items, 64, 64);
+    info.target =
+        image.target({}, {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL});
+    EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_ERROR_UNSUPPORTED);
+  });
+  EXPECT_NE(lastMessage().find("items[0].list, entry 0: its drawing has layers"), std::string::npos) << lastMessage();
+  gpgpDestroyAsset(layered);
+}
+
 TEST_F(LayersTest, WhatIsWrongIsNamed) {
   const auto refused = [&](const std::function<void(Scene&, GpgpLayer&)>& change, const char* text,
                            GpgpResult result = GPGP_ERROR_INVALID_ARGUMENT) {
@@ -403,7 +437,7 @@ TEST_F(LayersTest, WhatIsWrongIsNamed) {
     change(scene, layer);
     const uint32_t group = scene.group(0, 1, &layer);
     scene.group();
-    scene.add(rectangle(0, 0, 8, 8), group);
+    scene.add(solid(0, 0, 8, 8), group);
     makeDrawing(scene.paths(), scene.groups, result);
     EXPECT_NE(std::string(lastMessage()).find(text), std::string::npos) << text << ", not: " << lastMessage();
   };
@@ -417,6 +451,28 @@ TEST_F(LayersTest, WhatIsWrongIsNamed) {
   refused([&](Scene&, GpgpLayer& l) { first(l).values[0] = INFINITY; }, "filter[0]: values hold a number");
   refused([&](Scene&, GpgpLayer& l) { first(l).group = 1; }, "filter[0].group is 1: no later group");
   refused([](Scene&, GpgpLayer& l) { l.filterTransform[0] = 0; }, "filterTransform has no inverse");
+
+  Scene scene;
+  const GpgpLayer layer = scene.filter({step(GPGP_FILTER_OFFSET)});
+  scene.add(solid(0, 0, 8, 8), scene.group(0, 1, &layer));
+  const std::vector<GpgpPath> paths = scene.paths();
+  GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
+  info.paths = paths.data();
+  info.pathCount = 1;
+  info.groups = scene.groups.data();
+  info.groupCount = 1;
+  GpgpAsset drawing = nullptr;
+  const auto unsupported = [&](const char* text) {
+    EXPECT_EQ(gpgpCreateDrawing(context, &info, &drawing), GPGP_ERROR_UNSUPPORTED);
+    EXPECT_NE(lastMessage().find(text), std::string::npos) << lastMessage();
+  };
+  info.hitTestable = VK_TRUE;
+  unsupported("the drawing has layers: it cannot be hitTestable");
+  info.editable = VK_TRUE;
+  unsupported("the drawing has layers: it cannot be editable");
+  info.editable = info.hitTestable = VK_FALSE;
+  info.methods = GPGP_DRAWING_FLATTENED | GPGP_DRAWING_IN_PASS;
+  unsupported("the drawing has layers: it cannot be drawn inside a render pass");
 }
 
 // ---------------------------------------------------------------- baked
@@ -429,10 +485,10 @@ TEST(BakedLayers, AreReadOrRefused) {
   layer.mask = 3;
   layer.blend = GPGP_BLEND_SCREEN;
   const uint32_t outer = scene.group(0, 0.5f), group = scene.group(outer, 1, &layer), mask = scene.group();
-  scene.clip(outer, rectangle(0, 0, 30, 30));
-  scene.add(rectangle(0, 0, 20, 20), outer);
-  scene.add(rectangle(5, 5, 25, 25), group);
-  scene.add(rectangle(0, 0, 15, 15), mask);
+  scene.clip(outer, solid(0, 0, 30, 30));
+  scene.add(solid(0, 0, 20, 20), outer);
+  scene.add(solid(5, 5, 25, 25), group);
+  scene.add(solid(0, 0, 15, 15), mask);
   const auto memory = std::pmr::get_default_resource();
   const auto made = vector::makeDrawing(scene.paths(), scene.groups, memory);
   ASSERT_TRUE(made);
