@@ -136,7 +136,8 @@ typedef struct GpgpPath {
 } GpgpPath;
 
 enum {
-  /** Nesting depth of groups that are less than opaque, up to which they are no layers (layers.h). */
+  /** Maximum nesting depth of a list's groups (ui.h), and of groups of paths that are less than opaque and no layers:
+   *  deeper ones become layers (layers.h). */
   GPGP_MAX_OPACITY_DEPTH = 4,
   GPGP_MAX_CLIP_DEPTH = 16 /**< Maximum nesting depth of groups with a clip. */
 };
