@@ -791,8 +791,10 @@ TEST_F(CanvasTest, GroupsThatCannotBeAreRefusedWithWords) {
   bad.fillRule = 7;
   refused({path}, {{0, 1, &bad, 1}}, GPGP_ERROR_INVALID_ARGUMENT, "groups[0].clip[0]: fillRule is 7");
   std::vector<GpgpPathGroup> deep;
-  for (uint32_t i = 0; i < 5; ++i) deep.push_back({i, 0.5f, nullptr, 0});
-  refused({path}, deep, GPGP_ERROR_UNSUPPORTED, "groups[4]: more than 4");
+  for (uint32_t i = 0; i < 200; ++i) deep.push_back({i, 0.5f, nullptr, 0}); // layers from the fifth on
+  path.group = 200;
+  refused({path}, deep, GPGP_ERROR_UNSUPPORTED, "more than 32 layers");
+  path.group = 1;
   deep.clear();
   for (uint32_t i = 0; i < 17; ++i) deep.push_back({i, 1, &outside, 1});
   refused({path}, deep, GPGP_ERROR_UNSUPPORTED, "groups[16]: more than 16");
