@@ -58,7 +58,8 @@ enum {
    *  order x times order y numbers as SVG lists them; mode: GpgpFilterEdge. Its elements are one unit of filter space
    *  apart. */
   GPGP_FILTER_CONVOLVE_MATRIX = 9,
-  GPGP_FILTER_DISPLACEMENT_MAP = 10, /**< values: scale; mode: x channel + 4 y channel (0 R, 1 G, 2 B, 3 A) of `input2` */
+  GPGP_FILTER_DISPLACEMENT_MAP =
+      10, /**< values: scale; mode: x channel + 4 y channel (0 R, 1 G, 2 B, 3 A) of `input2` */
   /** values: base frequency x, y, octaves (0 to 16), seed, stitch (0 or 1); mode: 0 fractal noise, 1 turbulence. Noise
    *  has no inputs; it is stitched at `region`. */
   GPGP_FILTER_TURBULENCE = 11,
@@ -112,7 +113,8 @@ typedef struct GpgpFilterStep {
   float values[20];
   const float* table; /**< by kind; NULL otherwise */
   uint32_t tableCount;
-  uint32_t group; /**< GPGP_FILTER_GROUP: 1 + the index of a later group without a parent, whose paths show here alone */
+  uint32_t
+      group; /**< GPGP_FILTER_GROUP: 1 + the index of a later group without a parent, whose paths show here alone */
 } GpgpFilterStep;
 
 /** What makes a group a layer. Order: filter, then clip, then mask, then opacity, then blend. Every layer is isolated:
@@ -123,9 +125,9 @@ typedef struct GpgpLayer {
   uint32_t mask;    /**< 0: none; otherwise 1 + the index of a later group without a parent, whose paths show only as
                          masks */
   GpgpMaskKind maskKind;
-  int32_t maskEncoding;    /**< GPGP_IMAGE_LINEAR or _SRGB: what luminance is computed from; SVG's default is sRGB */
-  float maskRegion[4];     /**< left, top, right, bottom in the space of `maskTransform`; nothing shows outside */
-  float maskTransform[6];  /**< to drawing space */
+  int32_t maskEncoding;   /**< GPGP_IMAGE_LINEAR or _SRGB: what luminance is computed from; SVG's default is sRGB */
+  float maskRegion[4];    /**< left, top, right, bottom in the space of `maskTransform`; nothing shows outside */
+  float maskTransform[6]; /**< to drawing space */
   const GpgpFilterStep* filter; /**< NULL: none. The result of the last step is the group's picture. */
   uint32_t filterCount;         /**< 0 while `filter` is not NULL: nothing shows */
   float filterTransform[6];     /**< filter space to drawing space; it must have an inverse */

@@ -148,7 +148,7 @@ typedef struct GpgpPathGroup {
   float opacity;
   /** The group shows only inside the union of these paths, which themselves paint nothing. NULL: no clip. */
   const GpgpPath* clip;
-  uint32_t clipCount; /**< 0 while `clip` is not NULL: the group is hidden. */
+  uint32_t clipCount;     /**< 0 while `clip` is not NULL: the group is hidden. */
   const GpgpLayer* layer; /**< Blend mode, mask, filter (layers.h). NULL: none. */
 } GpgpPathGroup;
 

@@ -32,9 +32,10 @@ void Importer::measure(const Shape& shape, const Affine& transform) {
 Box Importer::boxAround(pugi::xml_node node, std::string_view name, State state, const Affine& space) {
   box_ = {};
   toBox_ = inverseOf(space);
+  const Mode outer = mode_;
   mode_ = Mode::Measure;
   content(node, name, state);
-  mode_ = Mode::Paint;
+  mode_ = outer;
   return box_;
 }
 
@@ -53,18 +54,8 @@ Style Importer::styleOf(pugi::xml_node node, const LengthContext& lengths) {
   return style;
 }
 
-void Importer::clip(pugi::xml_node node, std::string_view name, State& state) {
-  Affine space = state.transform;
-  if (name == "use") { // its x and y move its own coordinates
-    LengthContext lengths = state.lengths;
-    lengths.fontSize = state.style.fontSize;
-    space = space * Affine{1,
-                           0,
-                           0,
-                           1,
-                           length(node, state.style, "x", lengths, LengthAxis::X, 0),
-                           length(node, state.style, "y", lengths, LengthAxis::Y, 0)};
-  }
+void Importer::clip(pugi::xml_node node, std::string_view name, State& state, const Frame* of) {
+  const Affine space = of ? of->space : spaceOf(node, name, state);
   std::optional<Box> box; // of the element, when first asked for
   std::vector<pugi::xml_node> targets;
   pugi::xml_node from = node;
@@ -93,7 +84,7 @@ void Importer::clip(pugi::xml_node node, std::string_view name, State& state) {
     inner.lengths = state.lengths;
     inner.depth = state.depth;
     if (isByBox) {
-      if (!box) box = boxAround(node, name, state, space);
+      if (!box) box = of ? of->box() : boxOfElement(node, name, state, space);
       if (box->left <= box->right)
         inner.transform =
             inner.transform * Affine{box->right - box->left, 0, 0, box->bottom - box->top, box->left, box->top};

@@ -51,6 +51,18 @@ const Importer::Picture* Importer::pictureOf(pugi::xml_node node) {
 }
 
 void Importer::drawImage(pugi::xml_node node, const State& state) {
+  LengthContext lengths = state.lengths;
+  lengths.fontSize = state.style.fontSize;
+  bool hasWidth = false, hasHeight = false;
+  const double w = extent(node, state.style, "width", lengths, LengthAxis::X, 0, &hasWidth);
+  const double h = extent(node, state.style, "height", lengths, LengthAxis::Y, 0, &hasHeight);
+  const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
+               y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
+  constexpr double unset = -1;
+  drawPicture(node, state, {x, y, hasWidth ? w : unset, hasHeight ? h : unset});
+}
+
+void Importer::drawPicture(pugi::xml_node node, const State& state, const ViewBox& box) {
   const std::string_view href = trim(hrefOf(node).value());
   const Place place = document_.place(node);
   if (!images_.fn) return reporter_.warn(place, "<image> is not supported");
@@ -66,17 +78,11 @@ void Importer::drawImage(pugi::xml_node node, const State& state) {
                                              : "holds nothing that can be decoded";
     return reporter_.warn(place, "<image> " + why + "; not supported");
   }
-  LengthContext lengths = state.lengths;
-  lengths.fontSize = state.style.fontSize;
-  bool hasWidth = false, hasHeight = false;
-  double w = extent(node, state.style, "width", lengths, LengthAxis::X, 0, &hasWidth);
-  double h = extent(node, state.style, "height", lengths, LengthAxis::Y, 0, &hasHeight);
-  const double pw = picture->width, ph = picture->height;
-  if (!hasWidth) w = hasHeight ? h * pw / ph : pw;
-  if (!hasHeight) h = w * ph / pw;
+  const double pw = picture->width, ph = picture->height, x = box.x, y = box.y;
+  double w = box.width, h = box.height;
+  if (w < 0) w = h >= 0 ? h * pw / ph : pw;
+  if (h < 0) h = w * ph / pw;
   if (!(w > 0 && h > 0)) return;
-  const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
-               y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
   const Affine fitted = Affine{1, 0, 0, 1, x, y} * fitViewBox({0, 0, pw, ph}, w, h, aspectRatio(node));
   if (state.style.overflowVisible && aspectRatio(node).slice)
     reporter_.warn(place, "overflow 'visible' is not supported: <image> is drawn without it");

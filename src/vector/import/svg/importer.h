@@ -65,7 +65,12 @@ private:
     size_t depth = 0;
     const Context* context = nullptr; ///< the innermost <use> around, whose paints context-fill and -stroke are
     uint32_t group = 0;               ///< 1 + index in the result
-    uint32_t fading = 0, clips = 0;   ///< groups around that fade, and that clip
+    uint32_t fading = 0, clips = 0, layers = 0; ///< groups around that fade, that clip, and layers
+  };
+  /// By what an element's effects are measured.
+  struct Frame {
+    const Affine& space; ///< from the element's coordinates
+    const std::function<Box()>& box;
   };
 
   /// A <use>, or a shape with markers, that is being shown.
@@ -114,8 +119,6 @@ private:
   void content(pugi::xml_node node, std::string_view name, State& state, const double* useSize = nullptr);
   void reportChildren(pugi::xml_node node);
   void draw(pugi::xml_node node, std::string_view name, const State& state);
-  /// Draws what `inside` draws with the state's clip path and opacity around it.
-  void grouped(pugi::xml_node node, std::string_view name, State& state, const std::function<void(State&)>& inside);
   /// Draws what `inside` draws, clipped to (0, 0, width, height) of the coordinates `frame` where it reaches beyond.
   void clipped(pugi::xml_node node, const Affine& frame, double width, double height, State& state,
                const std::function<void()>& inside);
@@ -129,7 +132,7 @@ private:
 
   // clip.cpp
   /// Puts what the element refers to around it; says so where that cannot be.
-  void clip(pugi::xml_node node, std::string_view name, State& state);
+  void clip(pugi::xml_node node, std::string_view name, State& state, const Frame* of);
   /// Of an element that others refer to: what it has from where it stands, not from them.
   Style styleOf(pugi::xml_node node, const LengthContext& lengths);
   /// Of all shapes inside, strokes and clips aside, in coordinates given by their transform to the page.
@@ -172,6 +175,8 @@ private:
   };
   const Picture* pictureOf(pugi::xml_node node);
   void drawImage(pugi::xml_node node, const State& state);
+  /// The node's picture where it lies: x, y, width, height. What cannot be drawn is said.
+  void drawPicture(pugi::xml_node node, const State& state, const ViewBox& place);
 
   // shapes.cpp
   /// `silent` receives the verbs of a path that end where it has no vertex.
@@ -191,7 +196,7 @@ private:
   Box boxOfContext(const Context& context);
 
   // gradient.cpp
-  /// A gradient or pattern, the one it refers to, and so on.
+  /// A gradient, pattern or filter, the one it refers to, and so on.
   struct GradientChain {
     std::vector<pugi::xml_node> gradients;
     bool cyclic = false;        ///< the last refers to one of them
@@ -200,6 +205,33 @@ private:
   const GradientChain& chainOf(pugi::xml_node gradient);
   pugi::xml_attribute gradientAttribute(const GradientChain& chain, const char* name) const;
   std::vector<GpgpGradientStop> gradientStops(const GradientChain& chain, const LengthContext& lengths);
+
+  // layer.cpp
+  /// Draws what `inside` draws with the state's clip path, mask, filter, opacity and mode of mixing around it. Those of
+  /// a mask are measured by what it masks.
+  void grouped(pugi::xml_node node, std::string_view name, State& state, const std::function<void(State&)>& inside,
+               const Frame* of = nullptr);
+  /// x, y, width and height of a mask or filter; nothing where it has no extent.
+  std::optional<Box> effectRegion(const GradientChain& chain, const char* unitsName, const State& state,
+                                  const std::function<Box()>& box);
+  /// From the coordinates in which an element's effects are given.
+  Affine spaceOf(pugi::xml_node node, std::string_view name, const State& state);
+  Box boxOfElement(pugi::xml_node node, std::string_view name, const State& state, const Affine& space);
+  /// Puts what `show` draws into a group that is shown only where something refers to it: 1 + index; 0: it is empty.
+  uint32_t aside(State inner, const std::function<void(State&)>& show);
+  /// What a mask property refers to; what is wrong is said.
+  pugi::xml_node maskOf(pugi::xml_node from, const std::string& value);
+  /// False where nothing is shown through it.
+  bool mask(pugi::xml_node target, pugi::xml_node node, const State& state, const Affine& space,
+            const std::function<Box()>& box, ImportedLayer& layer);
+  /// Around what was drawn since, effects included.
+  Box drawnBox(size_t firstPath, size_t firstGroup, const Affine& back) const;
+
+  // filter.cpp, primitives.cpp
+  struct FilterReader;
+  /// Whether the state's filter counts; what is wrong is said.
+  bool hasFilter(pugi::xml_node node, const State& state);
+
   // pattern.cpp
   /// Nothing where its tiles have no extent, or there is no box to measure them by.
   std::shared_ptr<const Tiling> tilingOf(const GradientChain& chain, const Surface& surface);
@@ -238,6 +270,9 @@ private:
   Imported result_;
   std::vector<pugi::xml_node> used_; // the <use> targets we are inside of
   size_t elements_ = 0, points_ = 0, work_ = 0, steps_ = 0;
+  std::vector<ImportedPath> aside_; // of groups that masks and filters refer to
+  size_t layerCount_ = 0, blendCount_ = 0, filterSteps_ = 0, filterNumbers_ = 0;
+  bool mayBlend_ = false;                // something speaks of modes of mixing
   bool stopped_ = false, empty_ = false; ///< the last: the root has a size of zero
   enum class Mode {
     Paint,

@@ -102,25 +102,6 @@ double directionAt(const Vertex& v) {
   return v.in + std::remainder(v.out - v.in, 2 * std::numbers::pi) / 2;
 }
 
-/// A number of degrees, or an angle with its unit; in radians.
-bool parseAngle(std::string_view text, double& radians) {
-  constexpr struct {
-    std::string_view unit;
-    double factor;
-  } units[] = {{"", std::numbers::pi / 180},
-               {"deg", std::numbers::pi / 180},
-               {"grad", std::numbers::pi / 200},
-               {"rad", 1},
-               {"turn", 2 * std::numbers::pi}};
-  Scanner s(text);
-  double number = 0;
-  if (!s.number(number)) return false;
-  const std::string unit = lowered(s.name());
-  for (const auto& u : units)
-    if (s.done() && u.unit == unit) return radians = number * u.factor, true;
-  return false;
-}
-
 } // namespace
 
 /// What a marker is, apart from where it stands.

@@ -48,6 +48,7 @@ void Importer::paintBackground(const State& state) {
 }
 
 Importer::State Importer::begin() {
+  mayBlend_ = document_.mayBlend();
   readSheets();
   const pugi::xml_node root = document_.root();
   const pugi::xml_attribute boxText = root.attribute("viewBox");

@@ -159,6 +159,7 @@ bool Importer::isForScreen(std::string_view media, const Place& place, const std
 
 void Importer::parseSheet(std::string_view text, std::string_view folder, const Place& place, size_t depth) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  mayBlend_ |= text.find("-blend-") != text.npos;
   sheet_.parse(text, place, reporter_,
                [&](std::string_view uri, const Place& from) { readSheet(uri, folder, from, depth + 1); });
 }
