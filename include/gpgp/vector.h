@@ -136,8 +136,9 @@ typedef struct GpgpPath {
 } GpgpPath;
 
 enum {
-  GPGP_MAX_OPACITY_DEPTH = 4, /**< Maximum nesting depth of groups that are less than opaque. */
-  GPGP_MAX_CLIP_DEPTH = 16    /**< Maximum nesting depth of groups with a clip. */
+  /** Nesting depth of groups that are less than opaque, up to which they are no layers (layers.h). */
+  GPGP_MAX_OPACITY_DEPTH = 4,
+  GPGP_MAX_CLIP_DEPTH = 16 /**< Maximum nesting depth of groups with a clip. */
 };
 
 /** Paths that are clipped or faded together. The paths of a group that is less than opaque must follow one another in
@@ -148,8 +149,11 @@ typedef struct GpgpPathGroup {
   float opacity;
   /** The group shows only inside the union of these paths, which themselves paint nothing. NULL: no clip. */
   const GpgpPath* clip;
-  uint32_t clipCount;     /**< 0 while `clip` is not NULL: the group is hidden. */
-  const GpgpLayer* layer; /**< Blend mode, mask, filter (layers.h). NULL: none. */
+  uint32_t clipCount; /**< 0 while `clip` is not NULL: the group is hidden. */
+  /** Blend mode, mask, filter (layers.h). NULL: none. Then the group is a layer all the same if a layer lies inside it
+   *  and it has a clip or is less than opaque. The paths of a layer must follow one another, as above; a layer without
+   *  paths shows nothing. */
+  const GpgpLayer* layer;
 } GpgpPathGroup;
 
 /** What a drawing or a glyph set keeps on the device, by who draws it. A combination of flags. */
@@ -452,7 +456,8 @@ typedef struct GpgpCanvasCreateInfo {
    *  rounded up. A word takes 16 bytes, on software devices 32. */
   uint32_t maxTileWords;
   /** Items of all kinds in one recording, not drawings alone; at most 65536; 0: 64. Lists (ui.h) count each of their
-   *  drawings and clips, and each change of transform, clip or group. The number of groups has the same limit. All
+   *  drawings and clips, and each change of transform, clip or group. A drawing with layers counts each of its layers,
+   *  clips of layers, and the paths between them. The number of groups has the same limit. All
    *  items together may show at most 8 different drawings and glyph sets. */
   uint32_t maxDrawings;
   /** Glyphs of all texts in one recording, blanks not counted, at most 1048576; 0: 1024. 160 bytes each, and 48 more
@@ -465,6 +470,14 @@ typedef struct GpgpCanvasCreateInfo {
   /** What recordings will write; 0: anything. Pipelines are made only for these: for a single target half as many, in
    *  half the time. */
   GpgpCanvasTargets targets;
+  /** Pixels of the pictures that drawings with layers (layers.h) are made of in one recording, at most 2^28; 0: none.
+   *  Such a recording takes the canvas itself, the part of it that each layer, mask and clip of a layer covers, and the
+   *  pictures between the steps of the largest filter. Paths behind a layer take a picture, too. A pixel takes 8 bytes.
+   *  The first layered drawing that does not fit and everything painted after it are left out. */
+  uint32_t maxLayerPixels;
+  /** Operations on these pictures in one recording, at most 65536; 0: 1024. A layer takes one, a step of a filter one
+   * to five. Each takes 304 bytes for every recording that can be in flight. */
+  uint32_t maxLayerOperations;
 } GpgpCanvasCreateInfo;
 #define GPGP_CANVAS_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO)
 
@@ -657,14 +670,18 @@ typedef struct GpgpCanvasReport {
   uint32_t tileWordsGiven; /**< maxTileWords */
   /** Counts only paths that got tile words. If tileWords > tileWordsGiven, raise that first and read this again. */
   uint32_t tileEntries;
-  uint32_t tileEntriesGiven; /**< maxTileEntries */
-  uint32_t pathsDropped;     /**< paths left out because a budget was short; text is left out by whole glyphs */
-  uint32_t glyphs;           /**< needed */
-  uint32_t glyphsGiven;      /**< maxGlyphs */
-  uint32_t shapes;           /**< needed */
-  uint32_t shapesGiven;      /**< maxShapes */
-  uint32_t items;            /**< needed */
-  uint32_t itemsGiven;       /**< maxDrawings */
+  uint32_t tileEntriesGiven;     /**< maxTileEntries */
+  uint32_t pathsDropped;         /**< paths left out because a budget was short; text is left out by whole glyphs */
+  uint32_t glyphs;               /**< needed */
+  uint32_t glyphsGiven;          /**< maxGlyphs */
+  uint32_t shapes;               /**< needed */
+  uint32_t shapesGiven;          /**< maxShapes */
+  uint32_t items;                /**< needed */
+  uint32_t itemsGiven;           /**< maxDrawings */
+  uint32_t layerPixels;          /**< needed */
+  uint32_t layerPixelsGiven;     /**< maxLayerPixels */
+  uint32_t layerOperations;      /**< needed */
+  uint32_t layerOperationsGiven; /**< maxLayerOperations; 0 without maxLayerPixels */
 } GpgpCanvasReport;
 #define GPGP_CANVAS_REPORT_INIT GPGP_INIT(GpgpCanvasReport, GPGP_STRUCTURE_CANVAS_REPORT)
 

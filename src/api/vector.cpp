@@ -64,6 +64,11 @@ GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCrea
         (methods != GPGP_DRAWING_IN_PASS || info->editable || info->hitTestable))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT,
                        "the drawing was baked without GPGP_DRAWING_FLATTENED; bake it with both methods");
+    if (!made->plan.empty() && (info->editable || info->hitTestable || (methods & GPGP_DRAWING_IN_PASS)))
+      return makeError(GPGP_ERROR_UNSUPPORTED, "the drawing has layers: it cannot be %s",
+                       info->editable      ? "editable"
+                       : info->hitTestable ? "hitTestable"
+                                           : "drawn inside a render pass (GPGP_DRAWING_IN_PASS)");
     auto asset = DrawingAsset::create(**context, info->label, std::move(*made), info->editable != VK_FALSE,
                                       info->hitTestable != VK_FALSE, methods, base, edits);
     if (!asset) return asset.error();
@@ -185,6 +190,11 @@ GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext handle, const GpgpCanvasCreate
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxShapes is %u; at most 1048576", info->maxShapes);
     if (info->targets & ~(GPGP_CANVAS_TARGET_HISTORY | GPGP_CANVAS_TARGET_RGBA8 | GPGP_CANVAS_TARGET_RGBA16F))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "targets has unknown bits");
+    if (info->maxLayerPixels > 1u << 28)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxLayerPixels is %u; at most 268435456", info->maxLayerPixels);
+    if (info->maxLayerOperations > 65536)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxLayerOperations is %u; at most 65536",
+                       info->maxLayerOperations);
     auto made = Canvas::create(**context, *info);
     if (!made) return made.error();
     *canvas = adopt<GpgpRecorder>(**context, std::move(*made));

@@ -78,6 +78,8 @@ struct Pass {
   uint32_t level = 0;              ///< left out of recordings that ask for as many levels or fewer
   bool beside = false;             ///< needs no barrier after the pass before: what both write, they add to, or
                                    ///< only one of them is recorded
+  bool stepped = false;            ///< dispatched as a recording's steps say, any number of times; such passes lie in a
+                                   ///< row
   bool barrierBefore = false;      ///< worked out by finish()
   uint32_t kindsAhead = 0;         ///< worked out by finish(): bits by PassKind, of this pass and those behind it up to
                                    ///< the next barrier

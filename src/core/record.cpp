@@ -118,6 +118,11 @@ Result<void> Recorder::check(const Record& record) const {
                        static_cast<unsigned long long>(scratch.size),
                        static_cast<unsigned long long>(passes_.scratchBytes));
   }
+  for (const Step& step : record.steps)
+    for (uint32_t axis = 0; axis < 3; ++axis)
+      if (step.groups[axis] > limits.maxComputeWorkGroupCount[axis])
+        return makeError(GPGP_ERROR_UNSUPPORTED, "a step needs %u workgroups in a row; this device dispatches %u",
+                         step.groups[axis], limits.maxComputeWorkGroupCount[axis]);
   for (uint32_t i = 0; i < passes_.groupCounts; ++i)
     for (uint32_t axis = 0; axis < 3; ++axis)
       if (record.groups[i][axis] > limits.maxComputeWorkGroupCount[axis])
@@ -129,7 +134,7 @@ Result<void> Recorder::check(const Record& record) const {
     const Binding& binding = record.bindings[i];
     const char* name = binding.name ? binding.name : resource.name;
     if (resource.kind == ResourceKind::buffer) {
-      if (binding.ownBuffer || !binding.hostData.empty()) continue;
+      if (binding.ownBuffer || !binding.hostData.empty() || binding.scratch != UINT32_MAX) continue;
       if (!binding.engineBuffer || !binding.engineBuffer->buffer) {
         if (resource.optional) continue;
         return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.buffer is NULL", name);
@@ -217,6 +222,10 @@ void Recorder::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxRes
       buffers[i] = {constants_.handle(), slot * passes_.constantsBytes + passes_.scratchOffsets[i], resource.bytes};
     } else if (resource.kind == ResourceKind::report) {
       if (reports) buffers[i] = {reports_.handle(), slot * reportStride_, passes_.reportBytes};
+    } else if (binding.scratch != UINT32_MAX) {
+      if (scratch)
+        buffers[i] = {scratch, scratchOffset + passes_.scratchOffsets[binding.scratch],
+                      passes_.resources[binding.scratch].bytes};
     } else if (!binding.hostData.empty()) {
       buffers[i] = {constants_.handle(), slot * passes_.constantsBytes + passes_.scratchOffsets[i],
                     binding.hostData.size()};
@@ -341,14 +350,40 @@ Result<void> Recorder::record(const Record& record) {
   if (!textureSets_.empty() && record.bindings[firstTexture_].texture.imageView)
     vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 1, 1, &textureSets_[slot], 0, nullptr);
   VkPipeline bound = VK_NULL_HANDLE;
+  const VkShaderStageFlags stages =
+      VkShaderStageFlags(VK_SHADER_STAGE_COMPUTE_BIT) |
+      (draws_ ? VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT : VkShaderStageFlags(0));
+  const auto bind = [&](uint32_t shader) {
+    const VkPipeline pipeline = shader == record.replacedShader ? record.replacement : pipelines_[shader];
+    if (bound == pipeline) return;
+    bound = pipeline;
+    vk.CmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, bound);
+  };
+  std::span<const Step> steps = record.steps;
   bool barrier = false; // owed by a pass that was left out, or needed by this one
   uint32_t since = 0;   // kinds of the passes since the last barrier
+  std::fill(ran_.begin(), ran_.end(), uint8_t(0));
   for (uint32_t p = 0; p < passes_.passes.size(); ++p) {
     const Pass& pass = passes_.passes[p];
     barrier = barrier || pass.barrierBefore;
-    const bool wanted =
-        pass.level < record.levels && (pass.condition == UINT32_MAX || record.conditions[pass.condition]);
-    ran_[p] = wanted;
+    const bool wanted = !pass.stepped && pass.level < record.levels &&
+                        (pass.condition == UINT32_MAX || record.conditions[pass.condition]);
+    ran_[p] = wanted || (pass.stepped && ran_[p]);
+    if (pass.stepped) {
+      for (const Step& step : steps) {
+        const Pass& stepped = passes_.passes[step.pass];
+        passBarrier(vk, cmd, since ? since : 1u << static_cast<uint32_t>(stepped.kind), stepped.kindsAhead);
+        since = 1u << static_cast<uint32_t>(stepped.kind);
+        ran_[step.pass] = true;
+        beginLabel(cmd, stepped.name);
+        bind(stepped.shader);
+        vk.CmdPushConstants(cmd, layout_, stages, 0, sizeof step.constant, &step.constant);
+        vk.CmdDispatch(cmd, step.groups[0], step.groups[1], step.groups[2]);
+        endLabel(cmd);
+      }
+      barrier = barrier || !steps.empty();
+      steps = {};
+    }
     if (wanted && barrier) {
       barrier = false;
       if (since) passBarrier(vk, cmd, since, pass.kindsAhead);
@@ -362,17 +397,9 @@ Result<void> Recorder::record(const Record& record) {
         const VkDeviceSize size = pass.size == VK_WHOLE_SIZE ? placeSize(pass.target) - pass.offset : pass.size;
         vk.CmdFillBuffer(cmd, buffer, offset + pass.offset, size / 4 * 4, pass.value);
       } else {
-        const VkPipeline pipeline = pass.shader == record.replacedShader ? record.replacement : pipelines_[pass.shader];
-        if (bound != pipeline) {
-          bound = pipeline;
-          vk.CmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, bound);
-        }
+        bind(pass.shader);
         if (pass.constantCount)
-          vk.CmdPushConstants(cmd, layout_,
-                              draws_ ? VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_VERTEX_BIT |
-                                           VK_SHADER_STAGE_FRAGMENT_BIT
-                                     : VkShaderStageFlags(VK_SHADER_STAGE_COMPUTE_BIT),
-                              0, pass.constantCount * 4, pass.constants.data());
+          vk.CmdPushConstants(cmd, layout_, stages, 0, pass.constantCount * 4, pass.constants.data());
         if (pass.kind == PassKind::dispatchIndirect) {
           const auto [buffer, offset] = place(pass.target);
           vk.CmdDispatchIndirect(cmd, buffer, offset + pass.offset);

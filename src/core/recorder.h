@@ -10,9 +10,9 @@
 
 namespace gpgp::core {
 
-constexpr uint32_t kMaxResources = 32;
+constexpr uint32_t kMaxResources = 36;
 constexpr uint32_t kMaxGroupCounts = 16;
-constexpr uint32_t kMaxConditions = 48;
+constexpr uint32_t kMaxConditions = 52;
 constexpr uint32_t kMaxTargets = 16;
 constexpr uint32_t kMaxDrawForms = 2;
 
@@ -25,6 +25,14 @@ struct Binding {
   const GpgpImage* image = nullptr;
   VkDescriptorImageInfo texture = {}; ///< imageView NULL: left out
   const char* name = nullptr;         ///< what this recording calls it in messages; null: the resource's name
+  uint32_t scratch = UINT32_MAX;      ///< a scratch resource that takes its place
+};
+
+/// One dispatch of a pass whose dispatches each recording lists (Pass::stepped).
+struct Step {
+  uint32_t pass;
+  std::array<uint32_t, 3> groups;
+  uint32_t constant; ///< push constant
 };
 
 struct Record {
@@ -37,7 +45,8 @@ struct Record {
   std::array<std::span<const std::byte>, 9> constants = {}; ///< for the first constants resource, in a row
   uint32_t replacedShader = UINT32_MAX; ///< passes with this shader run another pipeline of the same layout
   VkPipeline replacement = VK_NULL_HANDLE;
-  bool reports = false; ///< its passes write the whole report to the resource of that kind: nothing is copied
+  std::span<const Step> steps; ///< in order, each behind a barrier; recorded where the first stepped pass lies
+  bool reports = false;        ///< its passes write the whole report to the resource of that kind: nothing is copied
 };
 
 struct DrawRecord {

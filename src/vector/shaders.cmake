@@ -1,18 +1,19 @@
 # The shaders of the vector service: one table from which the build rules are made, what "shaders/vector_shaders.h"
 # declares, and the one source that holds the SPIR-V.
 #
-#   gpgp_vector_shader(NAME FILE [SUBGROUPS] [DRAWINGS] [TARGETS] DEFINES A=1 ...)
+#   gpgp_vector_shader(NAME FILE [SUBGROUPS] [DRAWINGS] [OPERATIONS] [TARGETS] DEFINES A=1 ...)
 #
 # Each axis multiplies the shader. In C++ vector_NAME is the SPIR-V, or an array of it by axis, in this order:
 #
 #   SUBGROUPS   [0] for any device, [1] for devices with subgroup arithmetic             SUBGROUPS=0|1
 #   DRAWINGS    [0] one drawing, [1] several drawings, [2] projective items              ONE_DRAWING=1|0, PROJECTIVE=1
+#   OPERATIONS  by what an operation of layers needs (operate.comp)                      OPERATIONS=0...
 #   TARGETS     [0] the history alone, [1] R8G8B8A8_UNORM, [2] R16G16B16A16_SFLOAT       TARGET=0|1|2
 set(vector_includes)
 set(vector_declarations)
 set(vector_definitions)
 function(gpgp_vector_shader name file)
-  cmake_parse_arguments(arg "SUBGROUPS;DRAWINGS;TARGETS" "" "DEFINES" ${ARGN})
+  cmake_parse_arguments(arg "SUBGROUPS;DRAWINGS;TARGETS;OPERATIONS" "" "DEFINES" ${ARGN})
   set(names vector_${name}) # name|define|define...
   set(type)
   macro(multiply axis size)
@@ -36,6 +37,7 @@ function(gpgp_vector_shader name file)
   endmacro()
   multiply(SUBGROUPS 2 any,SUBGROUPS=0 subgroups,SUBGROUPS=1)
   multiply(DRAWINGS 3 one,ONE_DRAWING=1 several,ONE_DRAWING=0 projective,ONE_DRAWING=0,PROJECTIVE=1)
+  multiply(OPERATIONS 3 composite,OPERATIONS=0 blur,OPERATIONS=1 colors,OPERATIONS=2)
   multiply(TARGETS 3 history,TARGET=0 rgba8,TARGET=1 rgba16f,TARGET=2)
   set(includes ${vector_includes})
   set(values)
@@ -117,6 +119,10 @@ foreach(form rich rich_one rich_images)
   gpgp_vector_shader(aside_${form} raster/raster.comp DEFINES ${${form}} ASIDE=1)
 endforeach()
 gpgp_vector_shader(raster_glyphs glyphs/raster_glyphs.comp TARGETS DEFINES ${plain})
+
+# Layers
+gpgp_vector_shader(operate layers/operate.comp OPERATIONS DEFINES ONE_DRAWING=0)
+gpgp_vector_shader(present layers/present.comp TARGETS DEFINES ONE_DRAWING=0)
 
 # Software devices
 gpgp_vector_shader(clear_words software/clear.comp DEFINES ONE_DRAWING=1 SOFTWARE=1 WORDS=1)

@@ -128,6 +128,8 @@ void main() {
     counters.shapesGiven = header.shapeLimit;
     counters.items = header.sources;
     counters.itemsGiven = header.sourceLimit;
+    counters.layerPixels = header.layerPixels;
+    counters.layerOperations = header.layerOperations;
     counters.wordsGiven = header.wordLimit;
     counters.entriesGiven = header.entryLimit;
     counters.cutPath = cut;

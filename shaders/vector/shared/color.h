@@ -45,7 +45,9 @@ GPGP_FN vec4 blended(vec3 color, float alpha, uint flags) {
   return vec4(((flags & kBlendSrgb) != 0u ? encodeSrgb(color) : color) * alpha, alpha);
 }
 // What the view and the target receive of colours that have been mixed.
-GPGP_FN vec4 linearColor(vec4 color, uint flags) { return (flags & kBlendSrgb) != 0u ? convert(color, false) : color; }
+GPGP_FN vec4 linearColor(vec4 color, uint flags) {
+  return (flags & (kBlendSrgb | kKeepEncoding)) == kBlendSrgb ? convert(color, false) : color;
+}
 GPGP_FN vec4 targetColor(vec4 color, uint flags) {
   const bool encoded = (flags & kBlendSrgb) != 0u, wanted = (flags & kEncodeSrgb) != 0u;
   return encoded == wanted ? color : convert(color, wanted);

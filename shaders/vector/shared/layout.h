@@ -184,10 +184,12 @@ struct CanvasHeader {
   uint glyphs, glyphLimit;
   uint shapes, shapeLimit; // needed; room for as many
   uint sources, sourceLimit;
-  uint shapeTables;  // vec4: ShapeRecords, their paints, stops, clips and layers: behind placements
-  uint binWords;     // of a bin: kBinHead, then a bit for each path
-  uint binListLimit; // paths in all bins' lists
-  uint zero;         // 0, which no compiler knows (raster.comp)
+  uint shapeTables;                  // vec4: ShapeRecords, their paints, stops, clips and layers: behind placements
+  uint binWords;                     // of a bin: kBinHead, then a bit for each path
+  uint binListLimit;                 // paths in all bins' lists
+  uint zero;                         // 0, which no compiler knows (raster.comp)
+  uint layerPixels, layerOperations; // needed
+  uint pad0, pad1;
   vec4 background;
 };
 
@@ -210,7 +212,7 @@ struct CanvasCounters {
   uint tilesX, tilesY, tilesZ; // workgroups of the pass that paints tiles by rows
   uint rowsTaken;              // of tiles, by fill on software devices
   uint ended;                  // 1: the device has ended loops before their time (core/turns.h)
-  uint pad1, pad2;
+  uint layerPixels, layerOperations; // needed
 };
 
 // A flattened segment between mark and fill.
@@ -238,10 +240,11 @@ GPGP_CONST float kUnbounded = 1e30f; // sides of a scissor that is none
 GPGP_CONST uint kItemGrouped = 0x80000000u;
 GPGP_CONST uint kWriteView = 1u;
 GPGP_CONST uint kEncodeSrgb = 2u;
-GPGP_CONST uint kExactArea = 4u;  // of a pixel's first edge
-GPGP_CONST uint kBlendSrgb = 8u;  // colours mix as sRGB encodes them
-GPGP_CONST uint kSplitRich = 16u; // what has groups or projective gradients is listed for the general shader
-GPGP_CONST uint kTileSize = 8u;   // pixels: what one entry holds of a path
+GPGP_CONST uint kExactArea = 4u;     // of a pixel's first edge
+GPGP_CONST uint kBlendSrgb = 8u;     // colours mix as sRGB encodes them
+GPGP_CONST uint kSplitRich = 16u;    // what has groups or projective gradients is listed for the general shader
+GPGP_CONST uint kKeepEncoding = 32u; // the view receives colours as they mix: it is a layer's picture
+GPGP_CONST uint kTileSize = 8u;      // pixels: what one entry holds of a path
 GPGP_CONST uint kMinBinShift = 2u, kMaxBinShift = 4u; // tiles: the upper level of the hierarchy
 // An entry: for each pair of pixels of a tile's row, whose samples change sides there (16 bits a pixel), then by how
 // much the pixel's area differs from its samples (16 signed bits a pixel, in 1/256 of a sample). On software devices a
@@ -283,7 +286,7 @@ static_assert(sizeof(gpgp::shader::ItemRecord) == 160 && sizeof(gpgp::shader::Sh
               sizeof(gpgp::shader::ClipRecord) == 16 && sizeof(gpgp::shader::LayerRecord) == 16 &&
               sizeof(gpgp::shader::SlotRecord) == 16 && sizeof(gpgp::shader::PlacementRecord) == 48 &&
               sizeof(gpgp::shader::BoxedPath) == 48 && sizeof(gpgp::shader::TileWord) == 16 &&
-              sizeof(gpgp::shader::CanvasHeader) == 144 && sizeof(gpgp::shader::CanvasCounters) == 128 &&
+              sizeof(gpgp::shader::CanvasHeader) == 160 && sizeof(gpgp::shader::CanvasCounters) == 128 &&
               sizeof(gpgp::shader::FlatSegmentRecord) == 24);
 #endif
 #endif

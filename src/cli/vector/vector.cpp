@@ -141,7 +141,13 @@ std::optional<Canvas> largerCanvas(Session& session, GpgpCanvasCreateInfo& info,
       next.maxPaths = std::max(info.maxPaths, report.paths);
       next.maxTileEntries = wanted(report.tileEntries, report.tileEntriesGiven, (eighths - ofWords) / 8.0);
       next.maxTileWords = wanted(report.tileWords, report.tileWordsGiven, ofWords / 8.0);
-      if (next.maxTileEntries == report.tileEntriesGiven && next.maxTileWords == report.tileWordsGiven) continue;
+      next.maxDrawings = std::max(info.maxDrawings, std::min(report.items, 65536u));
+      next.maxLayerPixels = std::max(info.maxLayerPixels, std::min(report.layerPixels, 1u << 28));
+      next.maxLayerOperations = std::max(info.maxLayerOperations, std::min(report.layerOperations, 65536u));
+      const bool layers = next.maxDrawings > report.itemsGiven || next.maxLayerPixels > report.layerPixelsGiven ||
+                          next.maxLayerOperations > report.layerOperationsGiven;
+      if (!layers && next.maxTileEntries == report.tileEntriesGiven && next.maxTileWords == report.tileWordsGiven)
+        continue;
       Result<Canvas> made = Canvas::create(session.context(), next);
       if (!made) continue;
       info = next;
@@ -152,6 +158,11 @@ std::optional<Canvas> largerCanvas(Session& session, GpgpCanvasCreateInfo& info,
 
 /// What is missing, and what would have held it. `said`: the budget was.
 std::string omitted(const GpgpCanvasReport& report, uint32_t paths, bool said) {
+  if (report.layerPixels > report.layerPixelsGiven || report.layerOperations > report.layerOperationsGiven)
+    return "the drawing's layers were left out: they need " + std::to_string(report.layerPixels) + " pixels and " +
+           std::to_string(report.layerOperations) + " operations, and there is room for " +
+           std::to_string(report.layerPixelsGiven) + " and " + std::to_string(report.layerOperationsGiven) +
+           "; a smaller --size needs fewer";
   const bool words = report.tileWords > report.tileWordsGiven;
   const std::string text =
       std::to_string(report.pathsDropped) + " of " + std::to_string(paths) + " paths were left out";
@@ -281,15 +292,21 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   canvasInfo.maxPaths = std::max(facts.paths, 1024u);
   canvasInfo.maxTileEntries = options.maxTileEntries;
   canvasInfo.targets = GPGP_CANVAS_TARGET_RGBA8;
+  const auto table = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
+                                             std::pmr::get_default_resource());
+  if (!table) throw Failure(table.error().text);
+  if (!table->plan.empty()) { // a first guess; the report says what is needed
+    const uint64_t pixels = uint64_t(size.width + 128) * (size.height + 128) * 3;
+    canvasInfo.maxLayerPixels =
+        static_cast<uint32_t>(std::min<uint64_t>(pixels, device.properties().limits.maxStorageBufferRange / 8));
+    canvasInfo.maxDrawings = static_cast<uint32_t>(std::clamp<size_t>(table->plan.runs.size() * 2, 64, 65536));
+  }
   Canvas canvas = session.take(Canvas::create(session.context(), canvasInfo), "gpgpCreateCanvas");
   session.check(canvas.prewarm(), "gpgpPrewarm");
   session.upload();
 
   const host::Image target(device, {.format = VK_FORMAT_R8G8B8A8_UNORM, .width = size.width, .height = size.height},
                            "picture");
-  const auto table = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
-                                             std::pmr::get_default_resource());
-  if (!table) throw Failure(table.error().text);
   // What is uploaded are outlines; the library makes them with the asset, where the time also holds the upload's.
   const auto beforeOutlines = std::chrono::steady_clock::now();
   gpgp::vector::makeOutlines(*table, std::pmr::get_default_resource());

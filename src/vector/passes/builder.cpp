@@ -1,5 +1,7 @@
 #include "vector/passes/builder.h"
 
+#include "vector/layers/operation.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
@@ -53,6 +55,12 @@ PassBuilder::PassBuilder(const CanvasSizes& canvas, const core::Device& device, 
   shapes = list.add({"shapes", scratch, shapeBytes});
   const VkDeviceSize keptTiles = sizes.software ? 0 : std::min<VkDeviceSize>(sizes.tiles(), shader::kTilesAside);
   aside = list.add({"tiles painted aside", scratch, std::max<VkDeviceSize>(keptTiles * 64 * 16, 16)});
+  pictures = list.add({"pictures", scratch, std::max<VkDeviceSize>(VkDeviceSize(sizes.layers.pixels) * 8, 16)});
+  operations =
+      list.add({"operations", buffer, VkDeviceSize(sizes.layers.operations) * sizeof(shader::OperationRecord), true});
+  layeredHistory = list.add({"history of layers", buffer, 0, true});
+  assert(pictures == shader::kBindPictures && operations == shader::kBindOperations &&
+         layeredHistory == shader::kBindLayeredHistory);
   assert(history == shader::kBindHistory && fromHost == shader::kBindConstants && items == shader::kBindItems &&
          images == shader::kBindImages && segments == shader::kBindFlatSegments && aside == shader::kBindAside);
   list.report = counters;
@@ -125,7 +133,7 @@ core::Pass& PassBuilder::listedTiles(const char* name, Spirv spirv, uint32_t con
 
 void PassBuilder::painted(const FormNames& names, const Forms& byTarget, uint32_t condition, VkDeviceSize arguments) {
   for (uint32_t t = 0; t < 3; ++t) {
-    if (!sizes.writes(t)) continue;
+    if (!sizes.rasters(t)) continue;
     core::Pass& pass = listedTiles(names[t], byTarget[t], condition, arguments);
     pass.uses[pass.useCount++] = {history, write};
     if (!sizes.software) pass.uses[pass.useCount++] = {aside, read};

@@ -41,7 +41,7 @@ public:
   const bool subgroups; ///< shaders with subgroup arithmetic
   core::ResourceIndex history = 0, image8 = 0, image16 = 0;
   core::ResourceIndex fromHost = 0, paths = 0, words = 0, bins = 0, entries = 0, counters = 0, items = 0, images = 0,
-                      segments = 0, rows = 0, shapes = 0, aside = 0;
+                      segments = 0, rows = 0, shapes = 0, aside = 0, pictures = 0, operations = 0, layeredHistory = 0;
 };
 
 // Stages, in the order in which they are recorded.
@@ -52,6 +52,7 @@ void addFill(PassBuilder& builder);           ///< allocate, split, fill
 void addRaster(PassBuilder& builder);         ///< raster
 void addSoftwareFill(PassBuilder& builder);   ///< addFill's on software devices
 void addSoftwareRaster(PassBuilder& builder); ///< addRaster's on software devices
+void addLayers(PassBuilder& builder);         ///< what composites and filters layers
 
 /// All passes of a canvas. `sizes` only need live during the call.
 core::PassList describePasses(const CanvasSizes& sizes, const core::Device& device, std::pmr::memory_resource* memory);

@@ -18,7 +18,8 @@ enum Groups : uint32_t {
   kSmallGlyphs,
   kOnce,
   kClear,
-  kFill
+  kFill,
+  kPresents
 };
 constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
 enum Conditions : uint32_t {
@@ -50,9 +51,10 @@ enum Conditions : uint32_t {
   kAloneSixteen, // samples, of one drawing
   kAloneOne,
   kAloneDrawings,
-  kSiftPlain
+  kSiftPlain,
+  kPresent = 48 // by target
 };
-static_assert(kSiftPlain < core::kMaxConditions);
+static_assert(kPresent + 2 < core::kMaxConditions);
 
 inline uint32_t divide(uint64_t a, uint32_t b) { return static_cast<uint32_t>((a + b - 1) / b); }
 

@@ -15,6 +15,7 @@ core::PassList describePasses(const CanvasSizes& sizes, const core::Device& devi
     addFill(builder);
     addRaster(builder);
   }
+  if (sizes.layers.pixels) addLayers(builder);
   return std::move(builder.list);
 }
 

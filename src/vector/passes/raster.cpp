@@ -36,7 +36,7 @@ void addRaster(PassBuilder& b) {
             vector_raster_glyphs,
             kGlyphs}})
     for (uint32_t t = 0; t < 3; ++t) {
-      if (!b.sizes.writes(t)) continue;
+      if (!b.sizes.rasters(t)) continue;
       core::Pass& pass = b.dispatch(
           raster.names[t], raster.spirv[t],
           {{b.paths, read}, {b.words, read}, {b.bins, read}, {b.entries, read}, {b.counters, read}, {b.history, write}},

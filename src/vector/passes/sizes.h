@@ -11,8 +11,9 @@ struct CanvasSizes {
   GpgpCanvasTargets targets;    ///< bits in the order of kNoImage, kHasImage8, kHasImage16
   ItemBudgets items;
   bool software; ///< the device has shaders without barriers
+  LayerBudgets layers{};
 
-  uint64_t tiles() const;
+  uint64_t tiles() const;     ///< of the canvas, or of pictures of layers
   uint32_t listWords() const; ///< of a tile's list on software devices
   uint64_t binWords() const;
   uint32_t binLists() const; ///< paths in the lists of all bins
@@ -22,6 +23,9 @@ struct CanvasSizes {
   /// Of the lists between mark and fill: rows of flattened segments, or pieces of them on software devices.
   uint32_t maxRows() const { return maxEntries * (software ? 4 : 8); }
   bool writes(uint32_t target) const { return targets >> target & 1; }
+  /// Layers are rasterised as a history is.
+  bool rasters(uint32_t target) const { return writes(target) || (target == 0 && layers.pixels); }
+  uint32_t maxBins() const; ///< of the largest size, in pictures of layers
 };
 
 } // namespace gpgp::vector

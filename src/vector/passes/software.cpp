@@ -51,12 +51,12 @@ void addSoftwareRaster(PassBuilder& b) {
   sift("sift, groups", vector_sift_split, kSplit).beside = true;
   static constexpr FormNames kSolid = {"solid tiles", "solid tiles rgba8", "solid tiles rgba16f"};
   for (uint32_t t = 0; t < 3; ++t)
-    if (b.sizes.writes(t))
+    if (b.sizes.rasters(t))
       b.target(b.dispatch(kSolid[t], vector_tiles_solid[t], {{b.bins, read}, {b.history, write}}, kTiles, kAny), t,
                kAny);
   static constexpr FormNames kRows = {"raster rows", "raster rows rgba8", "raster rows rgba16f"};
   for (uint32_t t = 0; t < 3; ++t)
-    if (b.sizes.writes(t))
+    if (b.sizes.rasters(t))
       b.target(b.list.dispatchIndirect(kRows[t], b.list.add(core::ShaderDesc{kRows[t], vector_tiles_rows[t]}),
                                        {{b.items, read},
                                         {b.paths, read},

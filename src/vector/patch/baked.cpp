@@ -1,6 +1,7 @@
-// Baked drawings (.gpgpv): a header of 20 words, then curves, patches, paths, paints, the stops of gradients,
-// clips and layers; and, if they are asked for, the words that draws inside a render pass read, which have a version of
-// their own. A drawing for these alone has neither curves nor patches.
+// Baked drawings (.gpgpv): a header of 26 words, then curves, patches, paths, paints, the stops of gradients,
+// clips, layers, and the plan of what is composited by itself (layers.h); and, if they are asked for, the words that
+// draws inside a render pass read, which have a version of their own. A drawing for these alone has neither curves nor
+// patches.
 //
 // Little-endian, as all targets are. What is loaded is checked as strictly as what a stranger sends: a shader may
 // then index without asking again.
@@ -19,17 +20,18 @@ struct Header {
   uint32_t version;
   uint64_t checksum; // of all bytes after it
   uint32_t curves, patches, paths, paints, stops, clips, layers, words;
+  uint32_t runs, tokens, sequences, nodes, steps, tables;
   float bounds[4], viewport[4];
 };
-static_assert(sizeof(Header) == 80);
+static_assert(sizeof(Header) == 104);
 constexpr char kMagic[4] = {'G', 'P', 'V', 'D'};
-constexpr uint32_t kVersion = 5;
+constexpr uint32_t kVersion = 6;
 constexpr size_t kSummedFrom = 16;
 
 bool sane(float v) { return std::abs(v) <= 4 * kMaxCoordinate; } // false for NaN
 bool sane(const shader::vec4& v) { return sane(v.x) && sane(v.y) && sane(v.z) && sane(v.w); }
 
-core::Result<void> checkContents(const Drawing& d) {
+core::Result<void> checkContents(const Drawing& d, std::pmr::memory_resource* memory) {
   for (size_t i = 0; i < d.curves.size(); ++i) {
     const CurveRecord& c = d.curves[i];
     if (!sane(c.ends) || !sane(c.controls) || !sane(c.bend) || !(c.ends.w >= 0) || !sane(c.endX) || !sane(c.endY) ||
@@ -71,15 +73,33 @@ core::Result<void> checkContents(const Drawing& d) {
       if (!(d.stops[p.firstStop + k - 1].offset <= d.stops[p.firstStop + k].offset))
         return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: the stops of paint %zu are not in order", i);
   }
-  // Clipped paths lie behind all clips: where paths are left out at the end, no clip is missing.
-  size_t clipPaths = 0;
+  if (auto ok = checkPlan(d.plan, d.paths.size(), memory); !ok) return ok;
+  // Clipped paths lie behind all clips of their run: where paths are left out at the end, no clip is missing.
+  size_t clipPaths = 0, run = 0;
+  std::pmr::vector<uint32_t> runs(d.clips.size(), 0, memory); // of clips
   for (size_t i = 0; i < d.clips.size(); ++i) {
     const ClipRecord& c = d.clips[i];
     const uint32_t above = c.parent && c.parent <= i ? d.clips[c.parent - 1].depth : 0;
     bool good = c.parent <= i && c.depth == above + 1 && c.depth <= shader::kMaxClipDepth &&
                 c.firstPath <= d.paths.size() && c.pathCount <= d.paths.size() - c.firstPath;
+    if (!d.plan.empty()) {
+      const auto& all = d.plan.runs;
+      while (run + 1 < all.size() && all[run + 1].firstPath <= c.firstPath) ++run;
+      good = good && c.firstPath >= all[run].firstPath &&
+             c.firstPath + uint64_t(c.pathCount) <= uint64_t(all[run].firstPath) + all[run].pathCount &&
+             (!c.parent || runs[c.parent - 1] == run);
+      clipPaths = std::max<size_t>(clipPaths, all[run].firstPath);
+      runs[i] = static_cast<uint32_t>(run);
+    }
     for (; good && clipPaths < c.firstPath + size_t(c.pathCount); ++clipPaths) good = d.paths[clipPaths].clip == 0;
     if (!good) return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: clip %zu is not a clip", i);
+  }
+  run = 0;
+  for (size_t i = 0; i < d.paths.size() && !d.plan.empty(); ++i) {
+    const auto& all = d.plan.runs;
+    while (i >= all[run].firstPath + size_t(all[run].pathCount)) ++run;
+    if (d.paths[i].clip && runs[d.paths[i].clip - 1] != run)
+      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: path %zu refers to another run's clip", i);
   }
   for (size_t i = 0; i < d.layers.size(); ++i) {
     const LayerRecord& l = d.layers[i];
@@ -122,19 +142,23 @@ std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resour
   header.clips = static_cast<uint32_t>(drawing.clips.size());
   header.layers = static_cast<uint32_t>(drawing.layers.size());
   header.words = static_cast<uint32_t>(drawing.words.size());
+  const LayerPlan& plan = drawing.plan;
+  header.runs = static_cast<uint32_t>(plan.runs.size());
+  header.tokens = static_cast<uint32_t>(plan.tokens.size());
+  header.sequences = static_cast<uint32_t>(plan.sequences.size());
+  header.nodes = static_cast<uint32_t>(plan.nodes.size());
+  header.steps = static_cast<uint32_t>(plan.steps.size());
+  header.tables = static_cast<uint32_t>(plan.tables.size());
   std::memcpy(header.bounds, drawing.bounds, sizeof header.bounds);
   std::memcpy(header.viewport, drawing.viewport, sizeof header.viewport);
-  const auto curves = std::as_bytes(std::span(drawing.curves));
-  const auto patches = std::as_bytes(std::span(drawing.patches));
-  const auto paths = std::as_bytes(std::span(drawing.paths));
-  const auto paints = std::as_bytes(std::span(drawing.paints));
-  const auto stops = std::as_bytes(std::span(drawing.stops));
-  const auto clips = std::as_bytes(std::span(drawing.clips));
-  const auto layers = std::as_bytes(std::span(drawing.layers)), words = std::as_bytes(std::span(drawing.words));
   std::pmr::vector<std::byte> bytes(sizeof header, std::byte{}, memory);
-  bytes.reserve(sizeof header + curves.size() + patches.size() + paths.size() + paints.size() + stops.size() +
-                clips.size() + layers.size() + words.size());
-  for (const auto part : {curves, patches, paths, paints, stops, clips, layers, words})
+  for (const auto part : {std::as_bytes(std::span(drawing.curves)), std::as_bytes(std::span(drawing.patches)),
+                          std::as_bytes(std::span(drawing.paths)), std::as_bytes(std::span(drawing.paints)),
+                          std::as_bytes(std::span(drawing.stops)), std::as_bytes(std::span(drawing.clips)),
+                          std::as_bytes(std::span(drawing.layers)), std::as_bytes(std::span(plan.runs)),
+                          std::as_bytes(std::span(plan.tokens)), std::as_bytes(std::span(plan.sequences)),
+                          std::as_bytes(std::span(plan.nodes)), std::as_bytes(std::span(plan.steps)),
+                          std::as_bytes(std::span(plan.tables)), std::as_bytes(std::span(drawing.words))})
     bytes.insert(bytes.end(), part.begin(), part.end());
   std::memcpy(bytes.data(), &header, sizeof header);
   header.checksum = checksum(std::span(bytes).subspan(kSummedFrom));
@@ -152,11 +176,15 @@ core::Result<Drawing> loadBaked(std::span<const std::byte> bytes, std::pmr::memo
   if (header.version != kVersion)
     return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: version %u, this library reads %u; bake it again",
                      header.version, kVersion);
-  const uint64_t size = sizeof header + uint64_t(header.curves) * sizeof(CurveRecord) +
-                        uint64_t(header.patches) * sizeof(PatchRecord) + uint64_t(header.paths) * sizeof(PathRecord) +
-                        uint64_t(header.paints) * sizeof(PaintRecord) + uint64_t(header.stops) * sizeof(StopRecord) +
-                        uint64_t(header.clips) * sizeof(ClipRecord) + uint64_t(header.layers) * sizeof(LayerRecord) +
-                        uint64_t(header.words) * sizeof(shader::uvec4);
+  const auto sum = [](auto... parts) { return (uint64_t(0) + ... + parts); };
+  const uint64_t size =
+      sum(sizeof header, uint64_t(header.curves) * sizeof(CurveRecord), uint64_t(header.patches) * sizeof(PatchRecord),
+          uint64_t(header.paths) * sizeof(PathRecord), uint64_t(header.paints) * sizeof(PaintRecord),
+          uint64_t(header.stops) * sizeof(StopRecord), uint64_t(header.clips) * sizeof(ClipRecord),
+          uint64_t(header.layers) * sizeof(LayerRecord), uint64_t(header.runs) * sizeof(LayerRun),
+          uint64_t(header.tokens) * sizeof(LayerToken), uint64_t(header.sequences) * sizeof(LayerSequence),
+          uint64_t(header.nodes) * sizeof(LayerNode), uint64_t(header.steps) * sizeof(LayerStep),
+          uint64_t(header.tables) * sizeof(float), uint64_t(header.words) * sizeof(shader::uvec4));
   if (size != bytes.size())
     return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: %zu bytes, the header says %llu", bytes.size(),
                      static_cast<unsigned long long>(size));
@@ -177,10 +205,16 @@ core::Result<Drawing> loadBaked(std::span<const std::byte> bytes, std::pmr::memo
   take(drawing.stops, header.stops);
   take(drawing.clips, header.clips);
   take(drawing.layers, header.layers);
+  take(drawing.plan.runs, header.runs);
+  take(drawing.plan.tokens, header.tokens);
+  take(drawing.plan.sequences, header.sequences);
+  take(drawing.plan.nodes, header.nodes);
+  take(drawing.plan.steps, header.steps);
+  take(drawing.plan.tables, header.tables);
   take(drawing.words, header.words);
   std::memcpy(drawing.bounds, header.bounds, sizeof header.bounds);
   std::memcpy(drawing.viewport, header.viewport, sizeof header.viewport);
-  if (auto ok = checkContents(drawing); !ok) return ok.error();
+  if (auto ok = checkContents(drawing, memory); !ok) return ok.error();
   if (!drawing.words.empty())
     if (auto ok = checkPatches(drawing.words, static_cast<uint32_t>(drawing.paths.size()) - clipPaths(drawing), memory);
         !ok)

@@ -236,7 +236,7 @@ struct Batch {
 } // namespace
 
 core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory,
-                                  const GpgpJobSystem* jobs, std::pmr::vector<LeftEmpty>* leftEmpty) {
+                                  const GpgpJobSystem* jobs, std::pmr::vector<LeftEmpty>* leftEmpty, size_t first) {
   constexpr uint64_t kVerbsOfBatch = 1000; // some tenths of a millisecond
   core::Result<Drawing> drawing = Drawing(memory);
   std::pmr::vector<Batch> batches(memory);
@@ -245,10 +245,11 @@ core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::mem
     for (size_t i = 0; i < paths.size(); ++i) {
       if (verbs >= kVerbsOfBatch) {
         batches.push_back(
-            {paths.subspan(i, 0), i, memory, leftEmpty != nullptr, std::pmr::vector<LeftEmpty>(memory), {}});
+            {paths.subspan(i, 0), first + i, memory, leftEmpty != nullptr, std::pmr::vector<LeftEmpty>(memory), {}});
         verbs = 0;
       }
-      batches.back().paths = paths.subspan(batches.back().first, i + 1 - batches.back().first);
+      const size_t begin = batches.back().first - first;
+      batches.back().paths = paths.subspan(begin, i + 1 - begin);
       verbs += paths[i].verbCount;
     }
   }
@@ -261,7 +262,7 @@ core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::mem
       if (leftEmpty) leftEmpty->insert(leftEmpty->end(), batch.leftEmpty.begin(), batch.leftEmpty.end());
     }
   } else {
-    drawing = convert(paths, 0, memory, leftEmpty);
+    drawing = convert(paths, first, memory, leftEmpty);
     if (!drawing) return drawing;
   }
   drawing->viewport[0] = drawing->bounds[0];

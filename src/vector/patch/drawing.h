@@ -5,6 +5,7 @@
 #pragma once
 #include "core/result.h"
 #include "vector/geometry/shape.h"
+#include "vector/patch/layers.h"
 #include "vector/shared/layout.h"
 
 #include <gpgp/vector.h>
@@ -25,7 +26,7 @@ using shader::StopRecord;
 struct Drawing {
   explicit Drawing(std::pmr::memory_resource* memory)
       : curves(memory), patches(memory), paths(memory), paints(memory), stops(memory), clips(memory), layers(memory),
-        words(memory) {}
+        plan(memory), words(memory) {}
   std::pmr::vector<CurveRecord> curves;
   std::pmr::vector<PatchRecord> patches; ///< grouped by path, paths in painting order
   std::pmr::vector<PathRecord> paths;
@@ -33,6 +34,7 @@ struct Drawing {
   std::pmr::vector<StopRecord> stops;   ///< of all gradients, each one's in a row
   std::pmr::vector<ClipRecord> clips;
   std::pmr::vector<LayerRecord> layers;
+  LayerPlan plan;         ///< where it has layers (layers.h); their runs' clips' paths lie in front of each run's own
   float bounds[4] = {};   ///< left, top, right, bottom of the ink; all 0 where there is none
   float viewport[4] = {}; ///< x, y, width, height
   /// Of baked drawings: what makePatches made of it (patches.h). Where these are there and `patches` is empty, the file
@@ -114,10 +116,11 @@ core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::span<con
                                   std::pmr::vector<LeftEmpty>* leftEmpty = nullptr);
 
 /// The drawing of paths in painting order; the same with and without jobs, which then call the memory resource side by
-/// side. Errors name the path; with `leftEmpty`, paths that cross themselves too often go there instead.
+/// side. Errors name the path, `first` being the first one; with `leftEmpty`, paths that cross themselves too often go
+/// there instead.
 core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory,
-                                  const GpgpJobSystem* jobs = nullptr,
-                                  std::pmr::vector<LeftEmpty>* leftEmpty = nullptr);
+                                  const GpgpJobSystem* jobs = nullptr, std::pmr::vector<LeftEmpty>* leftEmpty = nullptr,
+                                  size_t first = 0);
 
 /// How many paths at the front are there for clips alone.
 uint32_t clipPaths(const Drawing& drawing);

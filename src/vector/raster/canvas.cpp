@@ -43,13 +43,17 @@ CanvasSizes sizesOf(const GpgpCanvasCreateInfo& info, bool software) {
           .targets = info.targets ? info.targets : ~GpgpCanvasTargets(0),
           .items = {info.maxDrawings ? info.maxDrawings : 64, info.maxGlyphs ? info.maxGlyphs : 1024,
                     info.maxShapes ? info.maxShapes : 1024, info.maxPaths ? info.maxPaths : 262144},
-          .software = software};
+          .software = software,
+          .layers = {info.maxLayerPixels, !info.maxLayerPixels      ? 0
+                                          : info.maxLayerOperations ? info.maxLayerOperations
+                                                                    : 1024}};
 }
 } // namespace
 
 Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
     : Recorder(owner, core::Kind::canvas, info.base, GPGP_SERVICE_VECTOR), sizes_(sizesOf(info, owner.device.software)),
-      assets_(sizes_.items.items, &owner.host()), tables_(sizes_.items, &owner.host()) {}
+      assets_(sizes_.items.items, &owner.host()), tables_(sizes_.items, &owner.host()),
+      layers_(sizes_.layers, sizes_.layers.pixels ? sizes_.items.items : 0, &owner.host()) {}
 
 Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCanvasCreateInfo& info) {
   auto canvas = core::makeUnique<Canvas>(context.host(), context, info);
@@ -59,6 +63,10 @@ Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCa
                          {"draw.frag, multiview", vector_draw_frag_multiview}};
   if (auto ok = canvas->init(describePasses(canvas->sizes_, context.device, &context.host()), std::span(&draw, 1)); !ok)
     return ok.error();
+  uint32_t count = 0;
+  const auto& passes = canvas->passes().passes;
+  for (uint32_t p = 0; p < passes.size(); ++p)
+    if (passes[p].stepped) canvas->operationPasses_[count++] = p;
   return canvas;
 }
 
@@ -137,7 +145,18 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   auto* const placements = reinterpret_cast<shader::PlacementRecord*>(
       place ? place + sizeof(CanvasHeader) + sizeof(Gather::slots) : nullptr);
   if (!placements) return record(r); // which says why
-  Gather gather(context, sizes_.items, tables_, placements, info, sizes_.smallGlyphRoom());
+  // Recordings that show layers are planned first.
+  const bool layered =
+      std::any_of(assets.begin(), assets.end(), [](const ItemAsset& asset) { return asset.layered(); });
+  LayerPlanner planner(layers_, sizes_.layers, operationPasses_, sizes_.maxBins(), info);
+  Gather gather(context, sizes_.items, tables_, placements, info, layered ? 0 : sizes_.smallGlyphRoom(),
+                layered ? &planner : nullptr);
+  for (uint32_t i = 0; i < info.itemCount && layered; ++i)
+    if (auto ok = gather.plan(i, assets[i]); !ok) return ok;
+  planner.finish();
+  const bool composites = layered && planner.composites();
+  const uint32_t width = composites ? planner.width() : info.width,
+                 height = composites ? planner.height() : info.height; // of what is rasterised
   for (uint32_t i = 0; i < info.itemCount; ++i)
     if (auto ok = gather.add(i, assets[i]); !ok) return ok;
   CanvasHeader header{};
@@ -149,16 +168,16 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   const bool gradients = gather.gradients, projective = gather.projective, images = gather.images;
   const bool several = gather.slotCount > 1 || gather.lists;
 
-  header.width = info.width;
-  header.height = info.height;
-  header.tilesX = divide(info.width, shader::kTileSize);
-  header.tilesY = divide(info.height, shader::kTileSize);
+  header.width = width;
+  header.height = height;
+  header.tilesX = divide(width, shader::kTileSize);
+  header.tilesY = divide(height, shader::kTileSize);
   header.pathWords = divide(header.pathCount, 32);
   // Small bins where there are many paths, if there is room for them.
   constexpr uint32_t kPathsOfBin = 64;
   for (uint32_t shift = shader::kMaxBinShift; shift >= shader::kMinBinShift; --shift) {
-    const uint32_t across = divide(info.width, shader::kTileSize << shift),
-                   count = across * divide(info.height, shader::kTileSize << shift);
+    const uint32_t across = divide(width, shader::kTileSize << shift),
+                   count = across * divide(height, shader::kTileSize << shift);
     if (shift != shader::kMaxBinShift && uint64_t(count) * (header.pathWords + shader::kBinHead) > sizes_.binWords())
       break;
     header.binShift = shift;
@@ -174,6 +193,10 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   header.samples = info.samples ? info.samples : 16;
   header.flags = (history ? shader::kWriteView : 0) | (info.encodeSrgb ? shader::kEncodeSrgb : 0) |
                  (info.exactArea ? shader::kExactArea : 0) | (info.blendSrgb ? shader::kBlendSrgb : 0);
+  if (composites) header.flags |= shader::kWriteView | shader::kKeepEncoding;
+  if (layered) header.sources = std::max(header.sources, planner.runsNeeded());
+  header.layerPixels = layered ? planner.pixelsNeeded() : 0;
+  header.layerOperations = layered ? planner.operationsNeeded() : 0;
   // Only what is in a group or has a projective gradient or image takes the general shader, beside the others'.
   const bool rich = gather.groups || ((gradients || images) && projective);
   if (rich) header.flags |= shader::kSplitRich;
@@ -183,7 +206,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   header.listWords = sizes_.listWords();
   for (uint32_t i = 0; i < info.imageCount && images; ++i)
     header.images |= heldBy(info.images[i], info.blendSrgb) << i * shader::kImageBits;
-  header.background = {info.background[0], info.background[1], info.background[2], info.background[3]};
+  const shader::vec4 background{info.background[0], info.background[1], info.background[2], info.background[3]};
+  if (!composites) header.background = background; // else what layers make lies on it
   const auto bytes = [](const auto& records, uint32_t count) { return std::as_bytes(std::span(records).first(count)); };
   r.constants = {bytes(std::span(&header, 1), 1),
                  bytes(gather.slots, shader::kSlots),
@@ -196,12 +220,22 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                  bytes(tables_.layers, gather.layers)};
 
   if (history) {
-    r.bindings[shader::kBindHistory].ownBuffer = history->buffer();
-    r.bindings[shader::kBindHistory].ownSize = history->size();
+    core::Binding& binding = r.bindings[composites ? shader::kBindLayeredHistory : shader::kBindHistory];
+    binding.ownBuffer = history->buffer();
+    binding.ownSize = history->size();
   }
-  const uint32_t image = targetOf(info);
-  if (image != kNoImage)
-    r.bindings[image == kHasImage8 ? shader::kBindImage8 : shader::kBindImage16].image = &info.target;
+  const uint32_t target = targetOf(info), image = composites ? kNoImage : target; // image: of the raster
+  if (target != kNoImage)
+    r.bindings[target == kHasImage8 ? shader::kBindImage8 : shader::kBindImage16].image = &info.target;
+  if (composites) {
+    r.bindings[shader::kBindHistory].scratch = shader::kBindPictures;
+    shader::OperationRecord& present = layers_.operations[0];
+    present.values[0] = background;
+    present.mode = history != nullptr;
+    r.bindings[shader::kBindOperations].hostData = std::as_bytes(planner.operations());
+    r.steps = planner.steps();
+    r.conditions[kPresent + target] = true;
+  }
   // Small glyphs have passes of their own; recordings of nothing else, in one colour each, need little more than that.
   const uint32_t tiles = header.tilesX * header.tilesY;
   const uint64_t tileLists = uint64_t(tiles) * shader::kTileListWords + uint64_t(gather.smallGlyphEntries()) * 3;
@@ -230,7 +264,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                                    : kRich};
   for (const uint32_t painted : std::span(kinds).first(rich ? 3 : 2)) {
     r.conditions[painted + image] = true;
-    if (sizes_.software && history) r.conditions[painted + kNoImage] = true; // there no pass writes both
+    if (sizes_.software && history && !composites) r.conditions[painted + kNoImage] = true; // there no pass writes both
   }
   if (rich) r.conditions[images ? kAsideImages : one ? kAsideOne : kAside] = true;
   if (rich || sizes_.software) r.conditions[!rich ? kSiftPlain : one ? kSplitOne : kSplit] = true;
@@ -250,16 +284,17 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   r.groups[kSegments] = sizes_.software ? spread(segmentGroups) : rows(shader::kClearGroups + segmentGroups);
   // On software devices an invocation takes part of a segment's flattened segments, few enough turns for lavapipe's
   // loops.
-  if (sizes_.software) r.groups[kSegments][2] = divide(info.height, 1024);
+  if (sizes_.software) r.groups[kSegments][2] = divide(height, 1024);
   r.groups[kOnce] = {1, 1, 1};
   r.groups[kClear] = {64, 1, 1};
-  r.groups[kFill] = {std::min(std::max(header.segmentCount / 160, divide(info.height, 64)), 4096u), 1, 1};
+  r.groups[kFill] = {std::min(std::max(header.segmentCount / 160, divide(height, 64)), 4096u), 1, 1};
   r.groups[kSmallGlyphs] = rows(std::max(header.itemCount, 1u));
   const uint32_t wordGroups = std::min(std::max(256u, header.segmentCount / 256), divide(sizes_.maxWords, 64));
   r.groups[kWords] = sizes_.software ? spread(wordGroups) : std::array<uint32_t, 3>{wordGroups, 1, 1};
   r.groups[kTiles] = {divide(header.tilesX, 8), divide(header.tilesY, 8), 8};
   r.groups[kPacks] = rows(header.binCount);
   r.groups[kSift] = spread(divide(uint64_t(header.binCount) << header.binShift, 64));
+  r.groups[kPresents] = {divide(info.width, 8), divide(info.height, 8), 1};
   r.groups[kRaster] = {header.tilesX, header.tilesY, 1};
   constexpr uint32_t kSplitSide = 1u << shader::kMinBinShift;
   r.groups[kSplits] = {divide(header.tilesX, kSplitSide), divide(header.tilesY, kSplitSide), 1};
@@ -326,6 +361,10 @@ bool Canvas::takeCanvasReport(GpgpCanvasReport& report) {
   report.shapesGiven = counters.shapesGiven;
   report.items = counters.items;
   report.itemsGiven = counters.itemsGiven;
+  report.layerPixels = counters.layerPixels;
+  report.layerPixelsGiven = executed ? sizes_.layers.pixels : 0;
+  report.layerOperations = counters.layerOperations;
+  report.layerOperationsGiven = executed ? sizes_.layers.operations : 0;
   if (counters.pathsDropped) report.base.status = GPGP_BUDGET_EXCEEDED;
   if (counters.ended) report.base.status = GPGP_ERROR_UNSUPPORTED;
   return true;

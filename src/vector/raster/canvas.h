@@ -35,6 +35,8 @@ private:
   // Room for one recording's.
   std::pmr::vector<ItemAsset> assets_;
   ItemTables tables_;
+  LayerTables layers_;
+  std::array<uint32_t, 6> operationPasses_{}; ///< by OPERATIONS (operate.comp)
 };
 
 } // namespace gpgp::vector

@@ -15,14 +15,26 @@ DrawingTables packDrawing(const Drawing& drawing, const Outlines& outlines, std:
     bytes.insert(bytes.end(), part.begin(), part.end());
     return static_cast<uint32_t>(at);
   };
-  add(outlines.segments);
+  // Runs are drawings of their own: paths count from the run's first one.
+  std::pmr::vector<shader::SegmentRecord> segments(outlines.segments.begin(), outlines.segments.end(), memory);
+  std::pmr::vector<ClipRecord> clips(drawing.clips.begin(), drawing.clips.end(), memory);
+  for (const LayerRun& run : drawing.plan.runs) {
+    const uint32_t begin = run.firstPath, end = begin + run.pathCount;
+    for (uint32_t i = begin ? outlines.ends[begin - 1] : 0; i < (end ? outlines.ends[end - 1] : 0); ++i)
+      segments[i].path -= begin;
+    for (size_t i = 0; i < clips.size(); ++i)
+      if (drawing.clips[i].firstPath >= begin && drawing.clips[i].firstPath < end) clips[i].firstPath -= begin;
+  }
+  add(segments);
   std::pmr::vector<shader::BoxedPath> paths(memory);
   for (size_t i = 0; i < drawing.paths.size(); ++i) paths.push_back({outlines.boxes[i], drawing.paths[i]});
   tables.paths = add(paths);
   tables.slots.paints = add(drawing.paints);
   tables.slots.stops = add(drawing.stops);
-  tables.slots.clips = add(drawing.clips);
+  tables.slots.clips = add(clips);
   tables.slots.layers = add(drawing.layers);
+  tables.entries = add(drawing.plan.tables);
+  tables.bytes.resize((tables.bytes.size() + 15) / 16 * 16);
   return tables;
 }
 
@@ -65,6 +77,8 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
   }
   asset->pathTable_ = tables.paths;
   asset->tables_ = tables.slots;
+  asset->entryTable_ = tables.entries;
+  if (!drawing.plan.empty()) asset->setLayers(drawing, outlines);
   if (tables.bytes.size() > context.device.limits.maxStorageBufferRange)
     return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing has %zu bytes, but this device binds at most %u",
                            tables.bytes.size(), context.device.limits.maxStorageBufferRange);
@@ -73,6 +87,20 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
     asset->hit_.emplace(Hit{std::move(outlines), std::move(drawing.paths), std::move(drawing.clips)});
   if (editable) asset->kept_.emplace(Kept{std::move(drawing), std::move(outlines)});
   return asset;
+}
+
+void DrawingAsset::setLayers(const Drawing& drawing, const Outlines& outlines) {
+  std::pmr::memory_resource* memory = &context.host();
+  std::pmr::vector<Box> boxes(memory), runs(memory);
+  for (const shader::vec4& b : outlines.boxes) boxes.push_back({b.x, b.y, b.z, b.w});
+  for (const ClipRecord& clip : drawing.clips) std::fill_n(boxes.begin() + clip.firstPath, clip.pathCount, Box{});
+  for (const LayerRun& run : drawing.plan.runs) {
+    Box box;
+    for (uint32_t i = 0; i < run.pathCount; ++i) box = join(box, boxes[run.firstPath + i]);
+    runs.push_back(box);
+  }
+  plan_ = drawing.plan;
+  layerBounds_ = boundsOf(plan_, runs, memory);
 }
 
 core::Result<core::Unique<CanvasHistory>> CanvasHistory::create(core::Context& context,

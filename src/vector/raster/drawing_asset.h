@@ -13,6 +13,7 @@ struct DrawingTables {
   std::pmr::vector<std::byte> bytes;
   uint32_t paths;           ///< where BoxedPaths begin, in vec4
   shader::SlotRecord slots; ///< and the other tables
+  uint32_t entries = 0;     ///< tables of filters, four numbers in each vec4
 };
 DrawingTables packDrawing(const Drawing& drawing, const Outlines& outlines, std::pmr::memory_resource* memory);
 
@@ -36,7 +37,8 @@ public:
                                                          const DrawingAsset* base = nullptr,
                                                          std::span<const GpgpPathEdit> edits = {});
   DrawingAsset(core::Context& owner, const char* name)
-      : Resident(owner, core::Kind::drawing, name), ends_(&owner.host()) {}
+      : Resident(owner, core::Kind::drawing, name), plan_(&owner.host()), layerBounds_(&owner.host()),
+        ends_(&owner.host()) {}
 
   /// How many segments the first n paths have.
   uint32_t segments(size_t paths) const { return paths ? ends_[paths - 1] : 0; }
@@ -51,6 +53,20 @@ public:
   const shader::SlotRecord& tables() const { return tables_; }
   bool groups() const { return tables_.layers > tables_.clips || layerDepth_; } ///< that clip or fade
   uint32_t layerDepth() const { return layerDepth_; }                           ///< groups that fade in each other
+  const LayerPlan& plan() const { return plan_; }                               ///< empty where it has no layers
+  const LayerBounds& layerBounds() const { return layerBounds_; }
+  uint32_t tableOf(uint32_t entry) const { return entryTable_ + entry / 4; } ///< of a filter, in vec4
+  /// A part that is placed by itself: where its segments and paths begin in its buffer, in vec4, and how many there
+  /// are.
+  struct Run {
+    uint32_t segmentTable, pathTable, firstPath, paths;
+  };
+  Run run(uint32_t index) const {
+    if (plan_.empty()) return {0, pathTable_, 0, paths()};
+    const LayerRun& r = plan_.runs[index];
+    return {segments(r.firstPath) * uint32_t(sizeof(shader::SegmentRecord) / 16),
+            pathTable_ + r.firstPath * uint32_t(sizeof(shader::BoxedPath) / 16), r.firstPath, r.pathCount};
+  }
   bool gradients() const { return tables_.stops > tables_.paints; }
   uint32_t images() const { return images_; } ///< how many of the recording's images it needs
   const Kept* kept() const { return kept_ ? &*kept_ : nullptr; }
@@ -64,6 +80,10 @@ public:
   const float* viewport() const { return viewport_; }
 
 private:
+  void setLayers(const Drawing& drawing, const Outlines& outlines);
+  LayerPlan plan_;
+  LayerBounds layerBounds_;
+  uint32_t entryTable_ = 0;
   std::pmr::vector<uint32_t> ends_; // of segments, by path
   std::optional<Kept> kept_;        // where it is editable
   struct Hit {

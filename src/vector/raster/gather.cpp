@@ -17,6 +17,15 @@ ItemTables::ItemTables(const ItemBudgets& budgets, std::pmr::memory_resource* me
       stops(size_t(budgets.shapes) * 2, memory), clips(budgets.items, memory), layers(budgets.items, memory),
       clipStates(budgets.items, memory), groupStates(budgets.items, memory) {}
 
+bool ItemAsset::layered() const {
+  if (drawing) return !drawing->plan().empty();
+  if (!list) return false;
+  return std::any_of(list->commands().begin(), list->commands().end(), [](const List::Command& command) {
+    const core::Object* asset = command.kind == List::Kind::drawing ? command.asset() : nullptr;
+    return asset && !static_cast<const DrawingAsset*>(asset)->plan().empty();
+  });
+}
+
 core::Error Gather::wrong(GpgpResult code, const char* format, ...) const {
   char text[256];
   std::va_list args;
@@ -40,13 +49,19 @@ Result<uint32_t> Gather::bind(const core::Resident& asset) { // to a slot, if on
 /// Its index; kNone where it covers nothing or finds no room.
 uint32_t Gather::addSource(const Map& map, float opacity, uint32_t firstImage, const Chain& clip) {
   ItemRecord item{};
-  if (clip.hidden || !placeItem(map, info_.width, info_.height, item)) return kNone;
+  const Map moved =
+      compose({1, 0, 0, 1, double(region_.x - region_.box.left), double(region_.y - region_.box.top)}, map);
+  if (clip.hidden ||
+      !placeItem(moved, info_.width, info_.height, item, region_.x - region_.box.left, region_.y - region_.box.top))
+    return kNone;
   full_ = full_ || sources == budgets_.items;
   ++sourcesNeeded_;
   if (full_) return kNone;
   item.color.w = opacity;
   item.firstImage = firstImage;
-  item.scissor = clip.scissor;
+  const auto side = [](float v, int by) { return std::abs(v) < shader::kUnbounded ? v + static_cast<float>(by) : v; };
+  const int x = region_.x - region_.box.left, y = region_.y - region_.box.top;
+  item.scissor = {side(clip.scissor.x, x), side(clip.scissor.y, y), side(clip.scissor.z, x), side(clip.scissor.w, y)};
   item.clip = clip.chain;
   item.layer = clip.layer;
   groups = groups || item.clip || item.layer;
@@ -56,18 +71,117 @@ uint32_t Gather::addSource(const Map& map, float opacity, uint32_t firstImage, c
   return sources++;
 }
 
+Gather::Chain Gather::ownOf(const GpgpCanvasItem& item) const {
+  const float* s = item.scissor;
+  const bool cut = s[0] != 0 || s[1] != 0 || s[2] != 0 || s[3] != 0;
+  constexpr float kFar = shader::kUnbounded;
+  return {cut ? shader::vec4(s[0], s[1], s[2], s[3]) : shader::vec4(-kFar, -kFar, kFar, kFar), 0,
+          cut && !(s[0] < s[2] && s[1] < s[3])};
+}
+
+Result<void> Gather::plan(uint32_t index, const ItemAsset& asset) {
+  index_ = index;
+  entry_ = kNone;
+  const GpgpCanvasItem& item = info_.items[index];
+  const Map map = toMap(item.transform, item.perspective);
+  const Chain own = ownOf(item);
+  if (asset.drawing) return planDrawing(*asset.drawing, map, item.opacity, own);
+  if (asset.glyphSet) {
+    planner_->addPlain();
+    return {};
+  }
+  const List& list = *asset.list;
+  for (const List::Command& command : list.commands()) {
+    entry_ = command.firstEntry;
+    const core::Object* object = command.kind == List::Kind::drawing ? command.asset() : nullptr;
+    const auto* drawing = static_cast<const DrawingAsset*>(object);
+    if (!drawing || drawing->plan().empty()) {
+      planner_->addPlain();
+      continue;
+    }
+    if (command.space.clip || command.space.group || !list.clips().empty() || !list.groups().empty())
+      return wrong(GPGP_ERROR_UNSUPPORTED, ": its drawing has layers, which a list with clips or groups does not show");
+    const Map whole = compose(compose(map, list.bases()[command.space.base]), command.space.map());
+    if (auto ok = planDrawing(*drawing, whole, item.opacity * command.opacity, own); !ok) return ok;
+  }
+  return {};
+}
+
+Result<void> Gather::planDrawing(const DrawingAsset& drawing, const Map& map, float opacity, const Chain& own) {
+  if (drawing.plan().empty()) {
+    planner_->addPlain();
+    return {};
+  }
+  const shader::vec4 nothing(0);
+  if (auto ok = planner_->addLayered(drawing, map, opacity, own.hidden ? nothing : own.scissor); !ok)
+    return wrong(ok.error().code, ": %s", ok.error().text);
+  return {};
+}
+
+/// A thing without layers: behind a drawing with layers it goes into another region.
+void Gather::beginPlain() {
+  if (!planner_) return;
+  const auto runs = planner_->runs();
+  if (nextRun_ < runs.size() && runs[nextRun_].unit == unit_) base_ = runs[nextRun_++].region;
+  region_ = base_;
+  full_ = full_ || unit_ >= planner_->units();
+  ++unit_;
+}
+
+Result<void> Gather::addLayered(const DrawingAsset& drawing, const Map& map, uint32_t firstImage) {
+  const uint32_t unit = unit_++;
+  full_ = full_ || !planner_ || unit >= planner_->units();
+  if (full_) {
+    pathsDropped_ += drawing.paths();
+    return {};
+  }
+  const auto slot = bind(drawing);
+  if (!slot) return slot.error();
+  slots[*slot] = drawing.tables();
+  for (const auto runs = planner_->runs(); nextRun_ < runs.size() && runs[nextRun_].unit == unit; ++nextRun_) {
+    const PlacedRun& run = runs[nextRun_];
+    region_ = run.region;
+    const PixelBox& box = region_.box;
+    const Chain inside{{float(box.left), float(box.top), float(box.right), float(box.bottom)}, 0, false};
+    const uint32_t source = addSource(map, run.opacity, firstImage, inside);
+    if (source == kNone && !full_) continue; // covers nothing
+    addRun(drawing, run.run, source, *slot);
+  }
+  return {};
+}
+
+/// As many of a run's first paths as there is room for.
+void Gather::addRun(const DrawingAsset& drawing, uint32_t index, uint32_t source, uint32_t slot) {
+  const DrawingAsset::Run run = drawing.run(index);
+  const uint32_t paths = full_ ? 0 : std::min(run.paths, budgets_.paths - used_.paths);
+  pathsDropped_ += run.paths - paths;
+  full_ = full_ || paths < run.paths;
+  if (paths == 0) return;
+  gradients = gradients || drawing.gradients();
+  images = images || drawing.images();
+  groups = groups || drawing.groups();
+  placed_[used_.placements++] = {0,
+                                 0,
+                                 1,
+                                 source | slot << shader::kSlotBit,
+                                 {0, 0, 0, 1},
+                                 used_.segments,
+                                 used_.paths,
+                                 run.segmentTable,
+                                 run.pathTable};
+  used_.segments += drawing.segments(run.firstPath + paths) - drawing.segments(run.firstPath);
+  used_.paths += paths;
+}
+
 Result<void> Gather::add(uint32_t index, const ItemAsset& asset) {
   index_ = index;
   entry_ = kNone;
   const GpgpCanvasItem& item = info_.items[index];
-  const float* s = item.scissor;
-  const bool cut = s[0] != 0 || s[1] != 0 || s[2] != 0 || s[3] != 0;
-  constexpr float kFar = shader::kUnbounded;
-  const Chain own{cut ? shader::vec4(s[0], s[1], s[2], s[3]) : shader::vec4(-kFar, -kFar, kFar, kFar), 0,
-                  cut && !(s[0] < s[2] && s[1] < s[3])};
+  const Chain own = ownOf(item);
   if (asset.list) return addList(*asset.list, item, own);
   const Map map = toMap(item.transform, item.perspective);
   if (asset.drawing) return addDrawing(*asset.drawing, map, item.opacity, item.firstImage, own);
+  beginPlain();
   const uint32_t source = addSource(map, item.opacity, 0, own);
   return addGlyphs(*asset.glyphSet, {item.glyphs, item.glyphCount}, source);
 }
@@ -78,25 +192,21 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
   if (drawing.images() && (firstImage > info_.imageCount || drawing.images() > info_.imageCount - firstImage))
     return wrong(GPGP_ERROR_INVALID_ARGUMENT, ": its drawing needs %u images from images[%u] on; imageCount is %u",
                  drawing.images(), firstImage, info_.imageCount);
+  if (!drawing.plan().empty()) return addLayered(drawing, map, firstImage);
+  beginPlain();
   if (clip.layer && tables_.layers[clip.layer - 1].depth + drawing.layerDepth() > shader::kMaxLayerDepth)
     return wrong(GPGP_ERROR_UNSUPPORTED, ": with those of its drawing, more than %u groups fade in each other",
                  shader::kMaxLayerDepth);
   const uint32_t source = addSource(map, opacity, firstImage, clip);
   if (source == kNone && !full_) return {}; // covers nothing
-  const uint32_t paths = full_ ? 0 : std::min(drawing.paths(), budgets_.paths - used_.paths);
-  pathsDropped_ += drawing.paths() - paths;
-  full_ = full_ || paths < drawing.paths();
-  if (paths == 0) return {};
+  if (full_ || drawing.paths() == 0 || used_.paths == budgets_.paths) {
+    addRun(drawing, 0, source, 0);
+    return {};
+  }
   const auto slot = bind(drawing);
   if (!slot) return slot.error();
   slots[*slot] = drawing.tables();
-  gradients = gradients || drawing.gradients();
-  images = images || drawing.images();
-  groups = groups || drawing.groups();
-  placed_[used_.placements++] = {
-      0, 0, 1, source | *slot << shader::kSlotBit, {0, 0, 0, 1}, used_.segments, used_.paths, 0, drawing.pathTable()};
-  used_.segments += drawing.segments(paths);
-  used_.paths += paths;
+  addRun(drawing, 0, source, *slot);
   return {};
 }
 
@@ -212,6 +322,7 @@ Result<void> Gather::addList(const List& list, const GpgpCanvasItem& item, const
   resolveGroups(list, item.opacity);
   // Shapes and texts that follow each other in the same space share a source.
   uint32_t source = kNone, base = kNone, clip = kNone, group = kNone;
+  LayerRegion placed = region_;
   for (const List::Command& command : list.commands()) {
     entry_ = command.firstEntry;
     const List::Space& space = command.space;
@@ -234,10 +345,12 @@ Result<void> Gather::addList(const List& list, const GpgpCanvasItem& item, const
         return ok;
       continue;
     }
+    beginPlain();
     const core::Object* asset = nullptr;
     if (command.kind == List::Kind::text && !(asset = command.asset()))
       return wrong(GPGP_ERROR_INVALID_HANDLE, ": its glyph set was destroyed");
-    if (space.base != base || space.clip != clip || space.group != group) {
+    if (space.base != base || space.clip != clip || space.group != group || region_ != placed) {
+      placed = region_;
       base = space.base, clip = space.clip, group = space.group;
       source = addSource(compose(map, list.bases()[base]), opacity, item.firstImage, state);
     }

@@ -7,6 +7,7 @@
 #include "core/recorder.h"
 #include "vector/raster/drawing_asset.h"
 #include "vector/raster/glyph_set.h"
+#include "vector/raster/layer_plan.h"
 #include "vector/ui/list.h"
 
 namespace gpgp::vector {
@@ -16,6 +17,7 @@ struct ItemAsset {
   const DrawingAsset* drawing = nullptr;
   const GlyphSet* glyphSet = nullptr;
   const List* list = nullptr;
+  bool layered() const; ///< whether it shows a drawing with layers
 };
 
 struct ItemBudgets {
@@ -49,12 +51,15 @@ struct ItemTables {
 class Gather {
 public:
   /// `placed`: room for one of each item, glyph and shape of the budgets; only written. `smallGlyphRoom`: how many tile
-  /// entries small glyphs may take for themselves (small_glyphs.comp).
+  /// entries small glyphs may take for themselves (small_glyphs.comp). `planner`: of recordings that show layers; null
+  /// in others.
   Gather(core::Context& context, const ItemBudgets& budgets, ItemTables& tables, shader::PlacementRecord* placed,
-         const GpgpCanvasInfo& info, uint32_t smallGlyphRoom)
-      : context_(context), budgets_(budgets), tables_(tables), placed_(placed), info_(info),
+         const GpgpCanvasInfo& info, uint32_t smallGlyphRoom, LayerPlanner* planner)
+      : planner_(planner), context_(context), budgets_(budgets), tables_(tables), placed_(placed), info_(info),
         smallGlyphRoom_(smallGlyphRoom) {}
 
+  /// What the planner must know of an item; before all that follows.
+  core::Result<void> plan(uint32_t index, const ItemAsset& asset);
   /// NOT_READY where a glyph or a list's drawing is not resident.
   core::Result<void> add(uint32_t index, const ItemAsset& asset);
   /// Counts into the header, and where the tables of shapes will lie.
@@ -74,6 +79,11 @@ private:
   using Chain = ItemTables::ClipState;
   core::Result<void> addDrawing(const DrawingAsset& drawing, const Map& map, float opacity, uint32_t firstImage,
                                 const Chain& clip);
+  core::Result<void> planDrawing(const DrawingAsset& drawing, const Map& map, float opacity, const Chain& own);
+  void addRun(const DrawingAsset& drawing, uint32_t run, uint32_t source, uint32_t slot);
+  core::Result<void> addLayered(const DrawingAsset& drawing, const Map& map, uint32_t firstImage);
+  void beginPlain();
+  Chain ownOf(const GpgpCanvasItem& item) const;
   struct Block;
   class SmallGlyph;
   core::Result<void> addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphInstance> glyphs, uint32_t source);
@@ -89,6 +99,9 @@ private:
   core::Error wrong(GpgpResult code, const char* format, ...) const __attribute__((format(printf, 3, 4)));
 
   static constexpr uint32_t kNone = UINT32_MAX;
+  LayerPlanner* const planner_;
+  LayerRegion base_, region_; ///< where plain things go; where what is added lies
+  uint32_t unit_ = 0, nextRun_ = 0;
   core::Context& context_;
   const ItemBudgets budgets_;
   ItemTables& tables_;

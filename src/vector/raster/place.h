@@ -38,9 +38,10 @@ inline Map compose(const Map& outer, const Map& inner) {
 }
 
 /// Fills in transform, inverse, offsets, side, no scissor and, for projective maps, perspective and eye. False where
-/// nothing is to be seen on a canvas of that size: the map has no inverse that float can hold, or all lies behind the
-/// eye.
-inline bool placeItem(const Map& map, uint32_t width, uint32_t height, shader::ItemRecord& item) {
+/// nothing is to be seen on a canvas of that size, which begins at (left, top): the map has no inverse that float can
+/// hold, or all lies behind the eye.
+inline bool placeItem(const Map& map, uint32_t width, uint32_t height, shader::ItemRecord& item, int left = 0,
+                      int top = 0) {
   const auto narrow = [](double v) { return static_cast<float>(v); };
   auto [a, b, c, d, e, f, p, q, r] = map;
   const bool projective = map.projective();
@@ -69,8 +70,8 @@ inline bool placeItem(const Map& map, uint32_t width, uint32_t height, shader::I
     // 1 / w over the canvas and a margin around it is at most that of a corner; what lies at half that distance is
     // seen beyond the canvas.
     constexpr double kMargin = 64;
-    const double nearest =
-        std::max(-kMargin * x, (width + kMargin) * x) + std::max(-kMargin * y, (height + kMargin) * y) + z;
+    const double nearest = std::max((left - kMargin) * x, (left + width + kMargin) * x) +
+                           std::max((top - kMargin) * y, (top + height + kMargin) * y) + z;
     if (!(nearest > 0)) return false;
     item.perspective = {narrow(p), narrow(q), narrow(r), narrow(0.5 / nearest)};
     item.eye = {narrow(x), narrow(y), narrow(z), x < 0 ? 1.0f : 0.0f};

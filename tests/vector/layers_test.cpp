@@ -1,0 +1,524 @@
+// Layers on the canvas: blend modes, masks, clips and filters against closed forms; plans that must not change what is
+// drawn; order, budgets and errors.
+#include "canvas_fixture.h"
+
+#include <functional>
+
+namespace {
+using namespace gpgp;
+using namespace gpgp::test;
+
+constexpr float kAll[4] = {-1e5f, -1e5f, 1e5f, 1e5f};
+
+TestPath rectangle(float left, float top, float right, float bottom, std::array<float, 4> color = {1, 1, 1, 1}) {
+  TestPath path;
+  path.move(left, top).line(right, top).line(right, bottom).line(left, bottom).close();
+  path.color = color;
+  return path;
+}
+
+/// A layer that does nothing, to be changed.
+GpgpLayer plainLayer() {
+  GpgpLayer layer{};
+  for (float* transform : {layer.maskTransform, layer.filterTransform}) transform[0] = transform[3] = 1;
+  for (float* region : {layer.maskRegion, layer.filterRegion}) std::copy_n(kAll, 4, region);
+  layer.maskEncoding = GPGP_IMAGE_LINEAR;
+  return layer;
+}
+GpgpFilterStep step(GpgpFilterKind kind, std::vector<float> values = {}, int32_t mode = 0,
+                    uint32_t input = GPGP_FILTER_SOURCE, uint32_t input2 = GPGP_FILTER_SOURCE) {
+  GpgpFilterStep s{};
+  s.kind = kind;
+  s.mode = mode;
+  s.input = input;
+  s.input2 = input2;
+  std::copy_n(kAll, 4, s.region);
+  std::copy(values.begin(), values.end(), s.values);
+  return s;
+}
+
+/// Paths and groups that live as long as the test.
+struct Scene {
+  std::vector<TestPath> shapes;
+  std::vector<uint32_t> groupOf;
+  std::vector<GpgpPathGroup> groups;
+  std::vector<std::unique_ptr<GpgpLayer>> layers;
+  std::vector<std::unique_ptr<std::vector<GpgpFilterStep>>> filters;
+  std::vector<std::unique_ptr<TestPath>> clips;
+  std::vector<std::unique_ptr<GpgpPath>> clipViews;
+
+  /// Returns 1 + its index.
+  uint32_t group(uint32_t parent = 0, float opacity = 1, const GpgpLayer* layer = nullptr) {
+    groups.push_back({parent, opacity});
+    if (layer) {
+      layers.push_back(std::make_unique<GpgpLayer>(*layer));
+      groups.back().layer = layers.back().get();
+    }
+    return static_cast<uint32_t>(groups.size());
+  }
+  GpgpLayer filter(std::vector<GpgpFilterStep> steps) {
+    filters.push_back(std::make_unique<std::vector<GpgpFilterStep>>(std::move(steps)));
+    GpgpLayer layer = plainLayer();
+    layer.filter = filters.back()->data();
+    layer.filterCount = static_cast<uint32_t>(filters.back()->size());
+    return layer;
+  }
+  void clip(uint32_t group, const TestPath& path) {
+    clips.push_back(std::make_unique<TestPath>(path));
+    clipViews.push_back(std::make_unique<GpgpPath>(clips.back()->view()));
+    groups[group - 1].clip = clipViews.back().get();
+    groups[group - 1].clipCount = 1;
+  }
+  void add(const TestPath& path, uint32_t group = 0) {
+    shapes.push_back(path);
+    groupOf.push_back(group);
+  }
+  std::vector<GpgpPath> paths() const {
+    std::vector<GpgpPath> views;
+    for (size_t i = 0; i < shapes.size(); ++i) {
+      views.push_back(shapes[i].view());
+      views.back().group = groupOf[i];
+    }
+    return views;
+  }
+};
+
+struct LayersTest : CanvasTest {
+  uint32_t layerPixels = 1 << 22, operations = 0;
+  void makeLayerCanvas(uint32_t size = 256) {
+    GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
+    info.base = {"canvas with layers", device.graphics().family, 0, VK_FALSE};
+    info.maxWidth = info.maxHeight = size;
+    info.maxPaths = 4096;
+    info.targets = canvasTargets;
+    info.maxLayerPixels = layerPixels;
+    info.maxLayerOperations = operations;
+    canvas = recorder(gpgpCreateCanvas, info, nullptr);
+  }
+  std::vector<Rgba> draw(const Scene& scene, uint32_t size, GpgpCanvasReport* report = nullptr) {
+    const GpgpAsset drawing = makeDrawing(scene.paths(), scene.groups);
+    auto pixels = raster({place(drawing)}, size, size, 16, report);
+    gpgpDestroyAsset(drawing);
+    return pixels;
+  }
+};
+
+void expectNear(const Rgba& p, const std::array<double, 4>& want, double within, const std::string& what) {
+  const float got[4] = {p.r, p.g, p.b, p.a};
+  for (size_t k = 0; k < 4; ++k) ASSERT_NEAR(got[k], want[k], within) << what << ", channel " << k;
+}
+
+// ---------------------------------------------------------------- blend modes
+
+/// The specification's formulas, written again.
+double channel(int mode, double b, double s) {
+  switch (mode) {
+  case GPGP_BLEND_MULTIPLY: return b * s;
+  case GPGP_BLEND_SCREEN: return b + s - b * s;
+  case GPGP_BLEND_OVERLAY: return channel(GPGP_BLEND_HARD_LIGHT, s, b);
+  case GPGP_BLEND_DARKEN: return std::min(b, s);
+  case GPGP_BLEND_LIGHTEN: return std::max(b, s);
+  case GPGP_BLEND_COLOR_DODGE: return b == 0 ? 0 : s == 1 ? 1 : std::min(1.0, b / (1 - s));
+  case GPGP_BLEND_COLOR_BURN: return b == 1 ? 1 : s == 0 ? 0 : 1 - std::min(1.0, (1 - b) / s);
+  case GPGP_BLEND_HARD_LIGHT: return s <= 0.5 ? b * 2 * s : b + (2 * s - 1) - b * (2 * s - 1);
+  case GPGP_BLEND_SOFT_LIGHT: {
+    if (s <= 0.5) return b - (1 - 2 * s) * b * (1 - b);
+    const double d = b <= 0.25 ? ((16 * b - 12) * b + 4) * b : std::sqrt(b);
+    return b + (2 * s - 1) * (d - b);
+  }
+  case GPGP_BLEND_DIFFERENCE: return std::abs(b - s);
+  case GPGP_BLEND_EXCLUSION: return b + s - 2 * b * s;
+  default: return s;
+  }
+}
+using Color = std::array<double, 3>;
+double lum(const Color& c) { return 0.3 * c[0] + 0.59 * c[1] + 0.11 * c[2]; }
+Color setLum(Color c, double l) {
+  const double d = l - lum(c);
+  for (double& v : c) v += d;
+  const double own = lum(c), low = std::min({c[0], c[1], c[2]}), high = std::max({c[0], c[1], c[2]});
+  for (double& v : c) {
+    if (low < 0) v = own + (v - own) * own / (own - low);
+  }
+  for (double& v : c)
+    if (high > 1) v = own + (v - own) * (1 - own) / (high - own);
+  return c;
+}
+double sat(const Color& c) { return std::max({c[0], c[1], c[2]}) - std::min({c[0], c[1], c[2]}); }
+Color setSat(Color c, double s) {
+  std::array<size_t, 3> order{0, 1, 2};
+  std::sort(order.begin(), order.end(), [&](size_t i, size_t k) { return c[i] < c[k]; });
+  Color out{};
+  if (c[order[2]] > c[order[0]]) {
+    out[order[1]] = (c[order[1]] - c[order[0]]) * s / (c[order[2]] - c[order[0]]);
+    out[order[2]] = s;
+  }
+  return out;
+}
+Color blendOf(int mode, const Color& b, const Color& s) {
+  switch (mode) {
+  case GPGP_BLEND_HUE: return setLum(setSat(s, sat(b)), lum(b));
+  case GPGP_BLEND_SATURATION: return setLum(setSat(b, sat(s)), lum(b));
+  case GPGP_BLEND_COLOR: return setLum(s, lum(b));
+  case GPGP_BLEND_LUMINOSITY: return setLum(b, lum(s));
+  default: {
+    Color out{};
+    for (size_t k = 0; k < 3; ++k) out[k] = channel(mode, b[k], s[k]);
+    return out;
+  }
+  }
+}
+std::array<double, 4> mixed(int mode, const std::array<double, 4>& b, const std::array<double, 4>& s) { // straight
+  const double ab = b[3], as = s[3];
+  if (mode == GPGP_BLEND_PLUS_LIGHTER) {
+    std::array<double, 4> out{};
+    for (size_t k = 0; k < 3; ++k) out[k] = std::min(1.0, b[k] * ab + s[k] * as);
+    out[3] = std::min(1.0, ab + as);
+    return out;
+  }
+  const Color both = blendOf(mode, {b[0], b[1], b[2]}, {s[0], s[1], s[2]});
+  std::array<double, 4> out{};
+  for (size_t k = 0; k < 3; ++k) out[k] = as * (1 - ab) * s[k] + as * ab * both[k] + (1 - as) * ab * b[k];
+  out[3] = as + ab * (1 - as);
+  return out;
+}
+
+TEST_F(LayersTest, BlendModesAreTheirFormulas) {
+  makeLayerCanvas();
+  constexpr std::array<float, 4> kBackdrops[] = {
+      {0.2f, 0.5f, 0.9f, 1}, {0.7f, 0.1f, 0.3f, 0.6f}, {0, 1, 0.5f, 1}, {0.25f, 0.25f, 0.25f, 0}};
+  constexpr std::array<float, 4> kSources[] = {
+      {0.8f, 0.3f, 0.1f, 1}, {0.4f, 0.9f, 0.6f, 0.5f}, {1, 0, 0.5f, 1}, {0.5f, 0.5f, 0.5f, 0.25f}};
+  for (int mode = GPGP_BLEND_NORMAL; mode <= GPGP_BLEND_PLUS_LIGHTER; ++mode) {
+    Scene scene;
+    for (int b = 0; b < 4; ++b) scene.add(rectangle(0, float(b * 16), 64, float(b * 16 + 16), kBackdrops[b]));
+    GpgpLayer layer = plainLayer();
+    layer.blend = mode;
+    const uint32_t group = scene.group(0, 1, &layer);
+    for (int s = 0; s < 4; ++s) scene.add(rectangle(float(s * 16), 0, float(s * 16 + 16), 64, kSources[s]), group);
+    const auto pixels = draw(scene, 64);
+    for (size_t b = 0; b < 4; ++b)
+      for (size_t s = 0; s < 4; ++s) {
+        const auto wide = [](const std::array<float, 4>& c) { return std::array<double, 4>{c[0], c[1], c[2], c[3]}; };
+        expectNear(pixels[(b * 16 + 8) * 64 + s * 16 + 8], mixed(mode, wide(kBackdrops[b]), wide(kSources[s])), 2e-3,
+                   "mode " + std::to_string(mode) + " backdrop " + std::to_string(b) + " source " + std::to_string(s));
+      }
+  }
+}
+
+// ---------------------------------------------------------------- masks, clips, opacity
+
+TEST_F(LayersTest, MasksTakeLuminanceOrAlpha) {
+  makeLayerCanvas();
+  for (const GpgpMaskKind kind : {GPGP_MASK_LUMINANCE, GPGP_MASK_ALPHA}) {
+    Scene scene;
+    GpgpLayer layer = plainLayer();
+    layer.mask = 2;
+    layer.maskKind = kind;
+    const uint32_t group = scene.group(0, 0.5f, &layer), mask = scene.group();
+    scene.add(rectangle(0, 0, 64, 64, {0, 0, 1, 1}));
+    scene.add(rectangle(0, 0, 64, 64, {1, 0.5f, 0, 1}), group);
+    scene.add(rectangle(8, 0, 32, 64, {0, 1, 0, 1}), mask);
+    scene.add(rectangle(32, 0, 64, 64, {1, 1, 1, 0.25f}), mask);
+    const auto pixels = draw(scene, 64);
+    const double left = kind == GPGP_MASK_ALPHA ? 1 : 0.7152, right = 0.25;
+    const auto want = [](double m) { return std::array<double, 4>{0.5 * m, 0.25 * m, 1 - 0.5 * m, 1}; };
+    expectNear(pixels[32 * 64 + 4], want(0), 1e-3, "outside");
+    expectNear(pixels[32 * 64 + 16], want(left), 1e-3, "left");
+    expectNear(pixels[32 * 64 + 48], want(right), 1e-3, "right");
+  }
+}
+
+TEST_F(LayersTest, MaskRegionsAndClipsCutLayers) {
+  makeLayerCanvas();
+  Scene scene;
+  GpgpLayer layer = plainLayer();
+  layer.mask = 2;
+  layer.maskRegion[0] = 0.125f, layer.maskRegion[1] = 0.25f, layer.maskRegion[2] = 0.5f, layer.maskRegion[3] = 1;
+  layer.maskTransform[0] = layer.maskTransform[3] = 64;
+  const uint32_t group = scene.group(0, 1, &layer), mask = scene.group();
+  scene.clip(group, rectangle(0, 0, 24.5f, 64));
+  scene.add(rectangle(0, 0, 64, 64, {1, 0, 0, 1}), group);
+  scene.add(rectangle(0, 0, 64, 64, {1, 1, 1, 1}), mask);
+  const auto pixels = draw(scene, 64);
+  for (uint32_t y = 0; y < 64; ++y)
+    for (uint32_t x = 0; x < 64; ++x) {
+      const double shown = y < 16 || x < 8 || x > 24 ? 0 : x == 24 ? 0.5 : 1;
+      ASSERT_NEAR(pixels[y * 64 + x].a, shown, 2e-3) << x << ", " << y;
+    }
+}
+
+TEST_F(LayersTest, OpacitiesAreAsDeepAsLayersAre) {
+  makeLayerCanvas();
+  Scene scene;
+  uint32_t group = 0;
+  for (int i = 0; i < 12; ++i) group = scene.group(group, 0.9f);
+  scene.add(rectangle(0, 0, 32, 32, {1, 0, 0, 1}), group);
+  scene.add(rectangle(16, 0, 48, 32, {0, 1, 0, 1}), group);
+  const auto pixels = draw(scene, 64);
+  const double faded = std::pow(0.9, 12);
+  expectNear(pixels[8 * 64 + 8], {faded, 0, 0, faded}, 2e-3, "left");
+  expectNear(pixels[8 * 64 + 24], {0, faded, 0, faded}, 2e-3, "both");
+}
+
+/// Random shapes in random groups, with layers that do nothing around some of them: the same picture.
+TEST_F(LayersTest, NeutralLayersChangeNothing) {
+  makeLayerCanvas();
+  std::mt19937 random(7);
+  for (int turn = 0; turn < 6; ++turn) {
+    blendSrgb = turn & 1;
+    Scene scenes[2]; // without layers, with them
+    const auto at = [&](float most) { return std::uniform_real_distribution<float>(0, most)(random); };
+    std::vector<uint32_t> open[2] = {{0}, {0}};
+    for (int i = 0; i < 24; ++i) {
+      const int what = static_cast<int>(at(4));
+      if (what == 0 && open[0].size() < 4) {
+        const float opacity = at(1) < 0.5f ? 1 : 0.5f + at(0.4f);
+        const bool neutral = at(1) < 0.7f, clipped = at(1) < 0.4f;
+        const TestPath clip = randomShape(static_cast<uint32_t>(random()), 160);
+        for (int k = 0; k < 2; ++k) {
+          GpgpLayer layer = k && neutral ? scenes[k].filter({step(GPGP_FILTER_OFFSET)}) : GpgpLayer{};
+          open[k].push_back(scenes[k].group(open[k].back(), opacity, layer.filter ? &layer : nullptr));
+          if (clipped) scenes[k].clip(open[k].back(), clip);
+        }
+      } else if (what == 1 && open[0].size() > 1) {
+        for (auto& o : open) o.pop_back();
+      } else {
+        TestPath shape = randomShape(static_cast<uint32_t>(random()), 128);
+        shape.color = {at(1), at(1), at(1), 0.4f + at(0.6f)};
+        for (int k = 0; k < 2; ++k) scenes[k].add(shape, open[k].back());
+      }
+    }
+    const auto want = draw(scenes[0], 160), got = draw(scenes[1], 160);
+    // Where edges of several runs share a pixel, samples are no longer told apart: few pixels, by less than a half.
+    size_t apart = 0;
+    for (size_t i = 0; i < want.size(); ++i) {
+      const float d = std::max({std::abs(want[i].r - got[i].r), std::abs(want[i].g - got[i].g),
+                                std::abs(want[i].b - got[i].b), std::abs(want[i].a - got[i].a)});
+      ASSERT_LT(d, 0.5f) << turn << ": " << i % 160 << ", " << i / 160;
+      apart += d > 0.006f;
+    }
+    EXPECT_LT(apart, want.size() / 8) << turn;
+  }
+}
+
+// ---------------------------------------------------------------- filters
+
+double cumulative(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
+
+TEST_F(LayersTest, ABlurredEdgeIsTheErrorFunction) {
+  makeLayerCanvas();
+  for (const float deviation : {0.7f, 2.f, 5.f, 9.f, 17.f, 40.f, 100.f})
+    for (const bool upright : {false, true}) {
+      Scene scene;
+      const GpgpLayer layer = scene.filter({step(GPGP_FILTER_GAUSSIAN_BLUR, {deviation, deviation})});
+      const uint32_t group = scene.group(0, 1, &layer);
+      scene.add(upright ? rectangle(-3000, -3000, 3000, 100) : rectangle(-3000, -3000, 100, 3000), group);
+      const auto pixels = draw(scene, 200);
+      for (uint32_t i = 0; i < 200; ++i) {
+        const double want = cumulative((100 - (i + 0.5)) / static_cast<double>(deviation));
+        const float got = pixels[upright ? i * 200 + 77 : 77 * 200 + i].a;
+        // The narrowest one is summed over whole pixels, which the edge between two of them shows.
+        ASSERT_NEAR(got, want, deviation < 1 ? 0.025 : 0.004) << deviation << " at " << i;
+      }
+    }
+}
+
+/// Turned, the blur of a small square is that of the square in its own space, turned.
+TEST_F(LayersTest, ABlurTurnsWithItsSpace) {
+  makeLayerCanvas();
+  for (const double angle : {0.0, 0.5, 1.5707963267948966, 2.2}) {
+    Scene scene;
+    GpgpLayer layer = scene.filter({step(GPGP_FILTER_GAUSSIAN_BLUR, {6, 2})});
+    const float c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
+    const float transform[6] = {c, s, -s, c, 64, 64};
+    std::copy_n(transform, 6, layer.filterTransform);
+    const uint32_t group = scene.group(0, 1, &layer);
+    TestPath square;
+    const auto corner = [&](float x, float y) { return std::pair(c * x - s * y + 64, s * x + c * y + 64); };
+    const auto [x0, y0] = corner(-10, -10);
+    const auto [x1, y1] = corner(10, -10);
+    const auto [x2, y2] = corner(10, 10);
+    const auto [x3, y3] = corner(-10, 10);
+    square.move(x0, y0).line(x1, y1).line(x2, y2).line(x3, y3).close();
+    square.color = {1, 1, 1, 1};
+    scene.add(square, group);
+    const auto pixels = draw(scene, 128);
+    for (int y = 0; y < 128; y += 3)
+      for (int x = 0; x < 128; x += 3) {
+        const double px = x + 0.5 - 64, py = y + 0.5 - 64, u = std::cos(angle) * px + std::sin(angle) * py,
+                     v = -std::sin(angle) * px + std::cos(angle) * py;
+        const auto along = [](double at, double d) { return cumulative((at + 10) / d) - cumulative((at - 10) / d); };
+        ASSERT_NEAR(pixels[static_cast<size_t>(y * 128 + x)].a, along(u, 6) * along(v, 2), 0.02)
+            << angle << " at " << x << ", " << y;
+      }
+  }
+}
+
+TEST_F(LayersTest, ADropShadowLiesBehind) {
+  makeLayerCanvas();
+  Scene scene;
+  GpgpFilterStep shadow = step(GPGP_FILTER_DROP_SHADOW, {3, 3, 10, 5, 0, 0, 1, 0.5f});
+  const GpgpLayer layer = scene.filter({shadow});
+  const uint32_t group = scene.group(0, 1, &layer);
+  scene.add(rectangle(20, 20, 60, 60, {1, 0, 0, 1}), group);
+  const auto pixels = draw(scene, 100);
+  for (uint32_t y = 0; y < 100; ++y)
+    for (uint32_t x = 0; x < 100; ++x) {
+      const auto along = [](double at, double from, double to) {
+        return cumulative((at - from) / 3) - cumulative((at - to) / 3);
+      };
+      const double dark = 0.5 * along(x + 0.5, 30, 70) * along(y + 0.5, 25, 65);
+      const bool own = x >= 20 && x < 60 && y >= 20 && y < 60;
+      expectNear(pixels[y * 100 + x], own ? std::array<double, 4>{1, 0, 0, 1} : std::array<double, 4>{0, 0, dark, dark},
+                 0.004, std::to_string(x) + ", " + std::to_string(y));
+    }
+}
+
+TEST_F(LayersTest, ColourFiltersAreTheirFormulas) {
+  makeLayerCanvas();
+  const std::array<double, 4> a{0.8, 0.3, 0.1, 0.5}; // straight
+  const auto run = [&](std::vector<GpgpFilterStep> steps) {
+    Scene scene;
+    const GpgpLayer layer = scene.filter(std::move(steps));
+    scene.add(rectangle(0, 0, 32, 32, {0.8f, 0.3f, 0.1f, 0.5f}), scene.group(0, 1, &layer));
+    return draw(scene, 32)[16 * 32 + 16];
+  };
+  const std::vector<float> matrix = {0.5f, 0.25f, 0, 0, 0.1f, 0, 2,    0, 0.2f, 0,
+                                     0.3f, 0.3f,  1, 0, 0,    0, 0.1f, 0, 1.2f, 0.05f};
+  std::array<double, 4> c{};
+  for (size_t row = 0; row < 4; ++row) {
+    c[row] = static_cast<double>(matrix[row * 5 + 4]);
+    for (size_t k = 0; k < 4; ++k) c[row] += static_cast<double>(matrix[row * 5 + k]) * a[k];
+    c[row] = std::clamp(c[row], 0.0, 1.0);
+  }
+  expectNear(run({step(GPGP_FILTER_COLOR_MATRIX, matrix)}), {c[0] * c[3], c[1] * c[3], c[2] * c[3], c[3]}, 2e-3,
+             "matrix");
+
+  std::vector<float> table(1024);
+  for (size_t i = 0; i < 256; ++i) {
+    const float t = static_cast<float>(i) / 255;
+    table[i] = t * t, table[256 + i] = 1 - t, table[512 + i] = t < 0.5f ? 0.25f : 0.75f, table[768 + i] = 0.5f * t;
+  }
+  GpgpFilterStep transfer = step(GPGP_FILTER_COMPONENT_TRANSFER);
+  transfer.table = table.data();
+  transfer.tableCount = 1024;
+  expectNear(run({transfer}), {0.64 * 0.25, 0.7 * 0.25, 0.25 * 0.25, 0.25}, 2e-3, "transfer");
+
+  const std::array<double, 4> f{0.2, 0.6, 1, 0.4}; // the flood
+  const GpgpFilterStep flood = step(GPGP_FILTER_FLOOD, {0.2f, 0.6f, 1, 0.4f});
+  const auto multiplied = [](const std::array<double, 4>& s) {
+    return std::array<double, 4>{s[0] * s[3], s[1] * s[3], s[2] * s[3], s[3]};
+  };
+  const auto pa = multiplied(a), pf = multiplied(f);
+  const float k[4] = {0.5f, 0.4f, 0.3f, 0.1f};
+  for (int mode = GPGP_OPERATOR_OVER; mode <= GPGP_OPERATOR_ARITHMETIC; ++mode) {
+    std::array<double, 4> want{};
+    for (size_t i = 0; i < 4; ++i) {
+      const double s = pa[i], b = pf[i], as = pa[3], ab = pf[3];
+      const double forms[] = {
+          s + b * (1 - as),
+          s * ab,
+          s * (1 - ab),
+          s * ab + b * (1 - as),
+          s * (1 - ab) + b * (1 - as),
+          std::min(s + b, 1.0),
+          std::clamp(double(k[0]) * s * b + double(k[1]) * s + double(k[2]) * b + double(k[3]), 0.0, 1.0)};
+      want[i] = forms[mode];
+    }
+    for (size_t i = 0; i < 3; ++i) want[i] = std::min(want[i], want[3]);
+    expectNear(run({flood, step(GPGP_FILTER_COMPOSITE, {k[0], k[1], k[2], k[3]}, mode, GPGP_FILTER_SOURCE,
+                                GPGP_FILTER_FIRST_STEP)}),
+               want, 2e-3, "operator " + std::to_string(mode));
+  }
+  for (int mode = GPGP_BLEND_NORMAL; mode <= GPGP_BLEND_PLUS_LIGHTER; ++mode)
+    expectNear(run({flood, step(GPGP_FILTER_BLEND, {}, mode, GPGP_FILTER_SOURCE, GPGP_FILTER_FIRST_STEP)}),
+               mixed(mode, f, a), 2e-3, "blend " + std::to_string(mode));
+}
+
+// ---------------------------------------------------------------- order, budgets
+
+TEST_F(LayersTest, ItemsComeInOrder) {
+  makeLayerCanvas();
+  Scene scene, plain;
+  const GpgpLayer layer = scene.filter({step(GPGP_FILTER_OFFSET, {4, 0})});
+  scene.add(rectangle(0, 8, 64, 24, {0, 1, 0, 1}), scene.group(0, 1, &layer));
+  plain.add(rectangle(8, 0, 24, 64, {1, 0, 0, 1}));
+  const GpgpAsset layered = makeDrawing(scene.paths(), scene.groups), other = makeDrawing(plain.paths());
+  std::vector<GpgpCanvasItem> items = {place(other), place(layered), place(other, 1, 20), place(layered, 1, 0, 20),
+                                       place(other, 1, 30)};
+  const auto pixels = raster(items, 64, 64, 16);
+  const auto at = [&](uint32_t x, uint32_t y) { return pixels[y * 64 + x]; };
+  expectNear(at(10, 4), {1, 0, 0, 1}, 1e-3, "behind");
+  expectNear(at(10, 16), {0, 1, 0, 1}, 1e-3, "the first layer on it");
+  expectNear(at(2, 16), {0, 0, 0, 0}, 1e-3, "moved");
+  expectNear(at(30, 16), {1, 0, 0, 1}, 1e-3, "in front of the first layer");
+  expectNear(at(30, 36), {0, 1, 0, 1}, 1e-3, "the second layer on it");
+  expectNear(at(46, 36), {1, 0, 0, 1}, 1e-3, "in front of all");
+  gpgpDestroyAsset(layered);
+  gpgpDestroyAsset(other);
+}
+
+TEST_F(LayersTest, WhatFindsNoRoomIsLeftOutAndCounted) {
+  Scene scene, plain;
+  const GpgpLayer layer = scene.filter({step(GPGP_FILTER_GAUSSIAN_BLUR, {4, 4})});
+  scene.add(rectangle(0, 8, 64, 24, {0, 1, 0, 1}), scene.group(0, 1, &layer));
+  plain.add(rectangle(8, 0, 24, 64, {1, 0, 0, 1}));
+  const GpgpAsset layered = makeDrawing(scene.paths(), scene.groups), other = makeDrawing(plain.paths());
+  const std::vector<GpgpCanvasItem> items = {place(other), place(layered), place(other, 1, 30)};
+  GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+  makeLayerCanvas();
+  const auto whole = raster(items, 64, 64, 16, &report);
+  EXPECT_EQ(report.base.status, GPGP_SUCCESS);
+  EXPECT_EQ(report.layerPixelsGiven, layerPixels);
+  const uint32_t pixels = report.layerPixels, needed = report.layerOperations;
+  EXPECT_GT(pixels, 64u * 64);
+  struct Case {
+    uint32_t pixels, operations;
+    bool fits;
+  };
+  for (const Case& c : {Case{pixels, needed, true}, Case{pixels - 1, needed, false}, Case{pixels, needed - 1, false},
+                        Case{1, needed, false}, Case{0, 0, false}}) {
+    layerPixels = c.pixels;
+    operations = c.operations;
+    makeLayerCanvas();
+    const auto part = raster(items, 64, 64, 16, &report);
+    const std::string what = std::to_string(c.pixels) + " pixels, " + std::to_string(c.operations);
+    EXPECT_EQ(report.base.status, c.fits ? GPGP_SUCCESS : GPGP_BUDGET_EXCEEDED) << what;
+    EXPECT_EQ(report.layerPixels, pixels) << what;
+    EXPECT_EQ(report.layerOperations, needed) << what;
+    EXPECT_EQ(report.pathsDropped > 0, !c.fits) << what;
+    expectNear(part[50 * 64 + 10], {1, 0, 0, 1}, 1e-3, what);
+    expectNear(part[50 * 64 + 40], c.fits ? std::array<double, 4>{1, 0, 0, 1} : std::array<double, 4>{0, 0, 0, 0}, 1e-3,
+               what);
+    for (size_t i = 0; i < part.size() && c.fits; ++i) ASSERT_EQ(part[i].g, whole[i].g) << what;
+  }
+  gpgpDestroyAsset(layered);
+  gpgpDestroyAsset(other);
+}
+
+TEST_F(LayersTest, WhatIsWrongIsNamed) {
+  const auto refused = [&](const std::function<void(Scene&, GpgpLayer&)>& change, const char* text,
+                           GpgpResult result = GPGP_ERROR_INVALID_ARGUMENT) {
+    Scene scene;
+    GpgpLayer layer = scene.filter({step(GPGP_FILTER_OFFSET), step(GPGP_FILTER_GAUSSIAN_BLUR, {1, 1})});
+    change(scene, layer);
+    const uint32_t group = scene.group(0, 1, &layer);
+    scene.group();
+    scene.add(rectangle(0, 0, 8, 8), group);
+    makeDrawing(scene.paths(), scene.groups, result);
+    EXPECT_NE(std::string(lastMessage()).find(text), std::string::npos) << text << ", not: " << lastMessage();
+  };
+  const auto first = [](GpgpLayer& layer) -> GpgpFilterStep& { return const_cast<GpgpFilterStep&>(layer.filter[0]); };
+  refused([](Scene&, GpgpLayer& l) { l.blend = 99; }, "groups[0].layer: blend is unknown");
+  refused([](Scene&, GpgpLayer& l) { l.mask = 1; }, "groups[0].layer.mask is 1: no later group");
+  refused([](Scene&, GpgpLayer& l) { l.mask = 9; }, "groups[0].layer.mask is 9: no later group");
+  refused([&](Scene&, GpgpLayer& l) { first(l).kind = 77; }, "groups[0].layer.filter[0]: kind is unknown");
+  refused([&](Scene&, GpgpLayer& l) { first(l).input = GPGP_FILTER_FIRST_STEP; }, "filter[0]: an input is no earlier");
+  refused([&](Scene&, GpgpLayer& l) { first(l).region[0] = NAN; }, "filter[0]: region is not a box");
+  refused([&](Scene&, GpgpLayer& l) { first(l).values[0] = INFINITY; }, "filter[0]: values hold a number");
+  refused([&](Scene&, GpgpLayer& l) { first(l).group = 1; }, "filter[0].group is 1: no later group");
+  refused([](Scene&, GpgpLayer& l) { l.filterTransform[0] = 0; }, "filterTransform has no inverse");
+}
+
+} // namespace
