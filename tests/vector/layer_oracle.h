@@ -1,6 +1,6 @@
 // What a drawing with layers should look like: pictures of whole pages in floats, worked out group by group with the
-// formulas of Compositing and Blending 1, CSS Masking 1 and Filter Effects 1. Written apart from the library. Edges come
-// from cli::vectorReference. Noise and light are not here.
+// formulas of Compositing and Blending 1, CSS Masking 1 and Filter Effects 1. Written apart from the library. Edges
+// come from cli::vectorReference. Noise and light are not here.
 #pragma once
 #include "cli/vector/reference.h"
 #include "vector/import/svg/import.h"
@@ -54,7 +54,7 @@ private:
   }
   static Map inverse(const Map& m) {
     const double k = 1 / (m.a * m.d - m.b * m.c);
-    return {m.d * k,  -m.b * k, -m.c * k, m.a * k, (m.c * m.f - m.d * m.e) * k, (m.b * m.e - m.a * m.f) * k};
+    return {m.d * k, -m.b * k, -m.c * k, m.a * k, (m.c * m.f - m.d * m.e) * k, (m.b * m.e - m.a * m.f) * k};
   }
   uint32_t topOf(uint32_t group) const {
     while (group && views_.groups[group - 1].parent) group = views_.groups[group - 1].parent;
@@ -87,7 +87,8 @@ private:
     std::vector<GpgpPath> own;
     for (const uint32_t i : paths) own.push_back(views_.paths[i]);
     std::vector<GpgpPathGroup> groups = views_.groups;
-    for (uint32_t g = owner; g; g = groups[g - 1].parent) groups[g - 1].opacity = 1, groups[g - 1].clip = nullptr, groups[g - 1].clipCount = 0;
+    for (uint32_t g = owner; g; g = groups[g - 1].parent)
+      groups[g - 1].opacity = 1, groups[g - 1].clip = nullptr, groups[g - 1].clipCount = 0;
     return picture(own, groups);
   }
   Pixels picture(const std::vector<GpgpPath>& paths, const std::vector<GpgpPathGroup>& groups) const {
@@ -249,7 +250,7 @@ private:
     for (uint32_t i = 0; i < l.filterCount; ++i) {
       const GpgpFilterStep& s = l.filter[i];
       const auto input = [&](uint32_t which) {
-        Pixels p = which >= GPGP_FILTER_FIRST_STEP  ? results[which - GPGP_FILTER_FIRST_STEP]
+        Pixels p = which >= GPGP_FILTER_FIRST_STEP    ? results[which - GPGP_FILTER_FIRST_STEP]
                    : which == GPGP_FILTER_TRANSPARENT ? blank()
                                                       : source;
         if (which == GPGP_FILTER_SOURCE_ALPHA)
@@ -287,11 +288,10 @@ private:
       Pixels out = blank();
       const int steps = std::max(8, static_cast<int>(std::ceil(length * 8)));
       double sum = 0;
-      for (int k = -4 * steps; k <= 4 * steps; ++k) sum += std::exp(-0.5 * k * k / (steps * static_cast<double>(steps)));
+      for (int k = -4 * steps; k <= 4 * steps; ++k)
+        sum += std::exp(-0.5 * k * k / (steps * static_cast<double>(steps)));
       for (int k = -4 * steps; k <= 4 * steps; ++k) {
         const double t = k / static_cast<double>(steps), w = std::exp(-0.5 * t * t) / sum;
-        const bool straight = x == 0 || y == 0;
-        (void)straight;
         for (uint32_t py = 0; py < height_; ++py)
           for (uint32_t px = 0; px < width_; ++px) {
             const Color c = sample(from, px + 0.5 - t * x, py + 0.5 - t * y);
@@ -304,7 +304,7 @@ private:
   }
 
   template <class Input>
-  Pixels step(const GpgpLayer&, const GpgpFilterStep& s, const Map& map, const Input& input) const {
+  Pixels step(const GpgpLayer& l, const GpgpFilterStep& s, const Map& map, const Input& input) const {
     const auto v = [&](size_t i) { return static_cast<double>(s.values[i]); };
     Pixels out = blank();
     const auto flood = [&](size_t first) {
@@ -342,7 +342,8 @@ private:
           } else {
             const double place = std::clamp(c[n], 0.0, 1.0) * 255;
             const size_t k = std::min<size_t>(static_cast<size_t>(place), 254);
-            const double low = static_cast<double>(s.table[256 * n + k]), high = static_cast<double>(s.table[256 * n + k + 1]);
+            const double low = static_cast<double>(s.table[256 * n + k]),
+                         high = static_cast<double>(s.table[256 * n + k + 1]);
             r[n] = low + (high - low) * (place - static_cast<double>(k));
           }
           r[n] = std::clamp(r[n], 0.0, 1.0);
@@ -403,8 +404,8 @@ private:
             }
           const double alpha = v(6) != 0 ? in[at(x, y)][3] : std::clamp(sum[3] + v(5), 0.0, 1.0);
           for (size_t n = 0; n < 3; ++n)
-            out[at(x, y)][n] = v(6) != 0 ? std::clamp(sum[n] + v(5), 0.0, 1.0) * alpha
-                                         : std::clamp(sum[n] + v(5) * alpha, 0.0, alpha);
+            out[at(x, y)][n] =
+                v(6) != 0 ? std::clamp(sum[n] + v(5), 0.0, 1.0) * alpha : std::clamp(sum[n] + v(5) * alpha, 0.0, alpha);
           out[at(x, y)][3] = alpha;
         }
       return out;
@@ -414,11 +415,26 @@ private:
       for (uint32_t y = 0; y < height_; ++y)
         for (uint32_t x = 0; x < width_; ++x) {
           const Color& m = by[at(x, y)];
-          const auto channel = [&](int c) {
-            return c == 3 ? m[3] : m[3] > 0 ? m[static_cast<size_t>(c)] / m[3] : 0;
-          };
+          const auto channel = [&](int c) { return c == 3 ? m[3] : m[3] > 0 ? m[static_cast<size_t>(c)] / m[3] : 0; };
           out[at(x, y)] = sample(in, x + 0.5 + v(0) * dx * (channel(s.mode % 4) - 0.5),
                                  y + 0.5 + v(0) * dy * (channel(s.mode / 4) - 0.5));
+        }
+      return out;
+    }
+    case GPGP_FILTER_TILE: {
+      const Pixels in = input(s.input);
+      const float* r =
+          s.input >= GPGP_FILTER_FIRST_STEP ? l.filter[s.input - GPGP_FILTER_FIRST_STEP].region : l.filterRegion;
+      const auto side = [r](size_t i) { return static_cast<double>(r[i]); };
+      const auto wrapped = [](double at, double from, double to) {
+        return from + (at - from) - std::floor((at - from) / (to - from)) * (to - from);
+      };
+      const Map back = inverse(map);
+      for (uint32_t y = 0; y < height_; ++y)
+        for (uint32_t x = 0; x < width_; ++x) {
+          const auto p = back.at((x + 0.5) / scale_, (y + 0.5) / scale_);
+          const auto q = map.at(wrapped(p[0], side(0), side(2)), wrapped(p[1], side(1), side(3)));
+          out[at(x, y)] = sample(in, q[0] * scale_, q[1] * scale_);
         }
       return out;
     }

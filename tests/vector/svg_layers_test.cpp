@@ -639,6 +639,65 @@ TEST(SvgLayers, OneLayerAnElement) {
   EXPECT_EQ(i.drawing.paths[0].color[3], 1.0f);
 }
 
+TEST(SvgLayers, ShapesOfClipsHaveClips) {
+  const std::string half = "<clipPath id='h'><path d='M0 0H30V100H0Z'/></clipPath>";
+  const Import i = page(half +
+                        "<clipPath id='c'><rect x='20' y='20' width='60' height='60' clip-path='url(#h)'/><rect x='70' "
+                        "y='70' width='20' height='20'/></clipPath>" +
+                        kWhite + "<rect width='100' height='100' clip-path='url(#c)'/>");
+  EXPECT_EQ(i.placed, Texts());
+  expectSound(i);
+  const auto layers = layersOf(i);
+  ASSERT_EQ(layers.size(), 1u);
+  EXPECT_EQ(layers[0].layer->layer.maskKind, GPGP_MASK_ALPHA);
+  EXPECT_EQ(pathsIn(i, layers[0].layer->layer.mask), 2u);
+  const size_t last = i.drawing.paths.size() - 2; // of the mask: the first has a clip around it
+  EXPECT_TRUE(i.drawing.groups[i.drawing.paths[last].group - 1].clipped);
+  EXPECT_EQ(i.drawing.paths[last + 1].group, layers[0].layer->layer.mask);
+  // What contains itself ends, what shows nothing hides.
+  const Import self =
+      page("<clipPath id='c'><rect width='9' height='9' clip-path='url(#c)'/></clipPath><rect width='9' "
+           "height='9' clip-path='url(#c)'/>");
+  ASSERT_EQ(self.placed.size(), 1u);
+  EXPECT_NE(self.placed[0].find("contains itself"), std::string::npos);
+  const Import none =
+      page("<clipPath id='n'/><clipPath id='c'><rect width='9' height='9' clip-path='url(#n)'/></clipPath><rect "
+           "width='9' height='9' clip-path='url(#c)'/>");
+  EXPECT_EQ(none.placed, Texts());
+  expectSound(none);
+}
+
+TEST(SvgLayers, ClipsAreNotSharedAroundLayers) {
+  // The paths of a layer lie in a row: neighbours in the same clip do not share it where one has a filter.
+  const std::string clip = "<clipPath id='c'><path d='M0 0h50v50'/></clipPath>";
+  const Import i = page(clip + kRect + "clip-path='url(#c)'/>" + kRect + "/>" + kRect +
+                        "clip-path='url(#c)' style='filter:blur(1px)'/>");
+  ASSERT_EQ(i.drawing.paths.size(), 3u);
+  const auto clipOf = [&](size_t path) {
+    uint32_t g = i.drawing.paths[path].group;
+    while (g && !i.drawing.groups[g - 1].clipped) g = i.drawing.groups[g - 1].parent;
+    return g;
+  };
+  EXPECT_NE(clipOf(0), 0u);
+  EXPECT_NE(clipOf(2), 0u);
+  EXPECT_NE(clipOf(0), clipOf(2));
+}
+
+TEST(SvgLayers, SymbolsHaveReferences) {
+  const auto first = [](const std::string& attributes) {
+    const Import i = page("<symbol id='s' viewBox='10 10 20 20' overflow='visible' " + attributes +
+                          "><path d='M10 10H30V30'/></symbol><use href='#s' x='50' y='40' width='40' height='40'/>");
+    EXPECT_EQ(i.placed, Texts()) << attributes;
+    const auto& p = i.drawing.paths.at(0).points;
+    return text(static_cast<double>(p[0])) + " " + text(static_cast<double>(p[1]));
+  };
+  EXPECT_EQ(first(""), "50 40");
+  EXPECT_EQ(first("refX='10' refY='10'"), "50 40");
+  EXPECT_EQ(first("refX='20' refY='30'"), "30 0");
+  EXPECT_EQ(first("refX='center'"), "30 40");
+  EXPECT_EQ(first("refY='bottom'"), "50 0");
+}
+
 TEST(SvgLayers, HostileFilesAreBounded) {
   const auto repeated = [](const std::string& what, int count) {
     std::string all;

@@ -1,4 +1,5 @@
-// What clip-path refers to: the shapes of a clipPath as the clip of a group (CSS Masking 1, chapter 6).
+// What clip-path refers to (CSS Masking 1, chapter 5): the shapes of a clipPath as the clip of a group, or as its mask
+// where they have clips themselves.
 #include "vector/import/svg/importer.h"
 
 #include <algorithm>
@@ -70,8 +71,12 @@ void Importer::clip(pugi::xml_node node, std::string_view name, State& state, co
     const std::string reference = referenceOf(value);
     const pugi::xml_node target = reference.empty() ? pugi::xml_node() : document_.find(reference);
     if (!target || document_.name(target) != "clipPath") return without(shown + " is no clipPath of this file");
-    if (std::find(targets.begin(), targets.end(), target) != targets.end()) return without(shown + " contains itself");
-    if (state.clips >= shader::kMaxClipDepth) return without("is inside too many others");
+    if (std::find(targets.begin(), targets.end(), target) != targets.end() ||
+        std::find(used_.begin(), used_.end(), target) != used_.end())
+      return without(shown + " contains itself");
+    if (state.clips >= shader::kMaxClipDepth || state.clips + state.fading + state.layers >= GPGP_MAX_LAYER_DEPTH ||
+        layerCount_ >= limits_.layers)
+      return without("is inside too many others");
     targets.push_back(target);
     State inner;
     inner.style = styleOf(target, state.lengths);
@@ -90,23 +95,52 @@ void Importer::clip(pugi::xml_node node, std::string_view name, State& state, co
             inner.transform * Affine{box->right - box->left, 0, 0, box->bottom - box->top, box->left, box->top};
     }
     if (!inner.transform.finite()) return without(shown + " has a transform beyond all numbers");
-    ++state.clips;
-    MadeClip& made = madeClips_[target.hash_value()];
-    const MadeClip wanted{inner.transform, state.lengths.width, state.lengths.height, state.group, made.group};
-    if (made.group && made == wanted) { // neighbours often share one
+    const MadeClip made = madeClips_[target.hash_value()];
+    MadeClip wanted{inner.transform, state.lengths.width, state.lengths.height, state.group, made.group};
+    if (sharesClips_ && made.group && made == wanted) { // neighbours often share one
+      ++state.clips;
       state.group = made.group;
       continue;
     }
     std::vector<ImportedPath> paths;
     std::swap(paths, result_.paths);
+    const Mode outer = mode_;
+    const bool inside = clipsInside_, apart = clipsApart_;
     mode_ = Mode::Clip;
+    clipsInside_ = clipsApart_ = false;
     visitChildren(target, inner);
-    mode_ = Mode::Paint;
+    const bool isMask = clipsInside_;
     std::swap(paths, result_.paths);
-    result_.groups.push_back({state.group, 1, true, std::move(paths)});
-    state.group = static_cast<uint32_t>(result_.groups.size());
-    made = wanted;
-    made.group = state.group;
+    if (isMask) { // shapes that have clips themselves: they cover what is shown
+      const auto layer = std::make_shared<ImportedLayer>();
+      layer->layer.maskKind = GPGP_MASK_ALPHA;
+      layer->layer.maskEncoding = GPGP_IMAGE_SRGB;
+      const float all[4] = {-1e7f, -1e7f, 1e7f, 1e7f}, same[6] = {1, 0, 0, 1, 0, 0};
+      std::copy_n(all, 4, layer->layer.maskRegion);
+      std::copy_n(same, 6, layer->layer.maskTransform);
+      result_.groups.push_back({state.group, 1, false, {}});
+      state.group = static_cast<uint32_t>(result_.groups.size());
+      ++state.layers;
+      ++layerCount_;
+      clipsApart_ = true;
+      used_.push_back(target);
+      State apartFrom = inner;
+      apartFrom.clips = state.clips, apartFrom.fading = state.fading, apartFrom.layers = state.layers;
+      layer->layer.mask = aside(std::move(apartFrom), [&](State& own) { visitChildren(target, own); });
+      used_.pop_back();
+      if (layer->layer.mask)
+        result_.groups[state.group - 1].layer = layer;
+      else
+        result_.groups[state.group - 1].clipped = true; // nothing is shown
+    } else {
+      ++state.clips;
+      result_.groups.push_back({state.group, 1, true, std::move(paths)});
+      state.group = static_cast<uint32_t>(result_.groups.size());
+      wanted.group = state.group;
+      madeClips_[target.hash_value()] = wanted;
+    }
+    mode_ = outer;
+    clipsInside_ = inside, clipsApart_ = apart;
   }
 }
 

@@ -91,6 +91,11 @@ Box Importer::FilterReader::subregion(const Primitive& p, const std::vector<uint
   const double bw = unit_.right - unit_.left, bh = unit_.bottom - unit_.top;
   const auto along = [&](const char* name, LengthAxis axis, double otherwise) {
     bool given = false;
+    const std::string_view text = trim(p.node.attribute(name).value());
+    if (byBox_ && text.find_first_not_of("+-.0123456789eE%") != text.npos) { // parts of a box have no units
+      importer.noLength(p.node, importer.document_.place(p.node.attribute(name), 0), name, text);
+      return otherwise;
+    }
     double value = importer.length(p.node, {}, name, lengths, axis, 0, &given);
     if (!given) return otherwise;
     const bool isX = axis == LengthAxis::X;

@@ -171,7 +171,7 @@ std::shared_ptr<const Gradient> Importer::gradientOf(const GradientChain& chain,
   }
   for (const pugi::xml_node gradient : chain.gradients) { // the property, whose attribute gradientTransform is
     const Style style = styleOf(gradient, state.lengths);
-    if (style.transform.empty()) continue;
+    if (!style.isMoved()) continue;
     const Affine own = transformOf(gradient, style, lengths); // its box is what its units measure by
     if (own.a * own.d == own.b * own.c) return nullptr;       // it has no extent
     map = map * own;

@@ -32,6 +32,7 @@ struct ImportLimits {
   size_t layers = 4096;                 ///< that blend, are masked or filtered, and their masks
   size_t filterSteps = 32'768;          ///< of all filters
   size_t filterNumbers = 4'000'000;     ///< of the tables and kernels of all filters
+  size_t imageBytes = size_t(64) << 20; ///< of images in other files
   size_t sheets = 64;                   ///< style sheets of other files
   size_t sheetBytes = size_t(16) << 20; ///< of all of them
 };

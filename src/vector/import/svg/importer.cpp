@@ -115,7 +115,9 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
   std::optional<State> entered = enter(node, parent);
   if (!entered) return;
   State& state = *entered;
-  state.transform = state.transform * transformOf(node, state.style, parent.lengths);
+  const Affine around = state.transform;
+  state.transform =
+      around * transformOf(node, state.style, parent.lengths, [&] { return boxAround(node, name, state, around); });
   if (!state.transform.finite()) {
     reporter_.error(document_.place(node), element(node) + " has a transform beyond all numbers; not drawn");
     return;
@@ -123,6 +125,10 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
   if (mode_ == Mode::Clip && !oneOf(name, kShapes) && name != "use" && name != "text") {
     reporter_.ignored(document_.place(node), element(node) + " shows nothing inside a <clipPath>");
     return;
+  }
+  if (mode_ == Mode::Clip && !state.style.clipPath.empty()) {
+    clipsInside_ = true;
+    if (clipsApart_) clip(node, name, state, nullptr);
   }
   if (mode_ != Mode::Paint) return content(node, name, state, useSize);
   grouped(node, name, state, [&](State& own) { content(node, name, own, useSize); });
@@ -214,10 +220,6 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
     if (mode_ == Mode::Paint) paintBackground(state);
     return visitChildren(node, state);
   }
-  for (const char* name : {"refX", "refY"})
-    if (node.attribute(name))
-      reporter_.warn(document_.place(node),
-                     std::string(name) + " is not supported: " + element(node) + " is drawn without it");
   LengthContext lengths = state.lengths;
   lengths.fontSize = state.style.fontSize;
   const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
@@ -231,14 +233,22 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
   if (text && !box) ignored(node, text);
   if (!hasExtent(node, w, h, box)) return;
   state.transform = state.transform * Affine{1, 0, 0, 1, x, y};
-  const Affine frame = state.transform;
+  Affine frame = state.transform;
   state.lengths.width = w;
   state.lengths.height = h;
+  Affine fit;
   if (box) {
-    state.transform = state.transform * fitViewBox(*box, w, h, aspectRatio(node));
+    fit = fitViewBox(*box, w, h, aspectRatio(node));
     state.lengths.width = box->width;
     state.lengths.height = box->height;
   }
+  if (document_.name(node) == "symbol" && (node.attribute("refX") || node.attribute("refY"))) { // (SVG 2, 5.5.2)
+    const ViewBox whole = box.value_or(ViewBox{0, 0, w, h});
+    const Point at = fit({referenceAlong(node, "refX", state.lengths, LengthAxis::X, whole.x, whole.width),
+                          referenceAlong(node, "refY", state.lengths, LengthAxis::Y, whole.y, whole.height)});
+    frame = frame * Affine{1, 0, 0, 1, node.attribute("refX") ? -at.x : 0, node.attribute("refY") ? -at.y : 0};
+  }
+  state.transform = frame * fit;
   if (mode_ != Mode::Paint || state.style.overflowVisible) return visitChildren(node, state);
   clipped(node, frame, w, h, state, [&] { visitChildren(node, state); });
 }
@@ -289,8 +299,7 @@ void Importer::reportUnsupported(pugi::xml_node node, std::string_view name, con
   const struct {
     bool is;
     const char* what;
-  } features[] = {{mode_ == Mode::Clip && !style.clipPath.empty(), "clip-path inside a clipPath"},
-                  {style.unsupportedEffect, "vector-effect other than non-scaling-stroke"},
+  } features[] = {{style.unsupportedEffect, "vector-effect other than non-scaling-stroke"},
                   {isShape && style.mixesLinear && isFaint, "color-interpolation of what is painted, linearRGB,"}};
   for (const auto& f : features)
     if (f.is)

@@ -101,6 +101,14 @@ private:
   /// Whether a style sheet's media are ours; what cannot be told is said.
   bool isForScreen(std::string_view media, const Place& place, const std::string& who);
   void readStyleElement(pugi::xml_node node, const Place& place, std::string_view name);
+  /// Why a file is not read: what it does; else it was.
+  struct Read {
+    const char* why = nullptr;
+    bool isInvalid = false, isTooLarge = false, isRefused = false; ///< the last: it is not wanted
+  };
+  /// Reads a file that lies in the drawing's folder or below it, by its name relative to `folder`.
+  Read readBeside(std::string_view href, std::string_view folder, size_t limit, std::string& path, std::string& bytes,
+                  const std::function<bool()>& isWanted = {});
   /// Reads a sheet of another file, whose name is relative to the folder of the one that refers to it.
   void readSheet(std::string_view href, std::string_view folder, const Place& place, size_t depth);
   void parseSheet(std::string_view text, std::string_view folder, const Place& place, size_t depth);
@@ -127,6 +135,9 @@ private:
   struct Marker;
   /// False where there is none to draw; what is wrong is said.
   bool readMarker(const std::string& value, pugi::xml_node node, const State& state, Marker& marker);
+  /// refX or refY of a marker or symbol, where its box begins and how large it is.
+  double referenceAlong(pugi::xml_node node, const char* name, const LengthContext& lengths, LengthAxis axis,
+                        double from, double size);
   /// `silent`: the verbs that end where the shape has no vertex.
   void drawMarkers(pugi::xml_node node, const Shape& shape, const std::vector<size_t>& silent, const State& state);
 
@@ -172,6 +183,7 @@ private:
   struct Picture { // that was decoded; width 0: it could not be
     uint32_t index = 0, width = 0, height = 0;
     const char* format = nullptr; ///< of one that is not decoded
+    const char* why = nullptr;    ///< of a file that is not read
   };
   const Picture* pictureOf(pugi::xml_node node);
   void drawImage(pugi::xml_node node, const State& state);
@@ -190,8 +202,9 @@ private:
 
   // cascade.cpp
   void cascade(pugi::xml_node node, const Style& parent, const LengthContext& lengths, Style& style);
-  /// What the transform and transform-origin properties come to.
-  Affine transformOf(pugi::xml_node node, const Style& style, const LengthContext& lengths);
+  /// What the properties that transform come to. `box`: the element's own, for transform-box.
+  Affine transformOf(pugi::xml_node node, const Style& style, const LengthContext& lengths,
+                     const std::function<Box()>& box = {});
   std::optional<Ink> resolve(const Paint& paint, const Surface& surface, pugi::xml_node node, const char* property);
   Box boxOfContext(const Context& context);
 
@@ -271,9 +284,12 @@ private:
   std::vector<pugi::xml_node> used_; // the <use> targets we are inside of
   size_t elements_ = 0, points_ = 0, work_ = 0, steps_ = 0;
   std::vector<ImportedPath> aside_; // of groups that masks and filters refer to
+  size_t imageBytes_ = 0;           // of other files
   size_t layerCount_ = 0, blendCount_ = 0, filterSteps_ = 0, filterNumbers_ = 0;
-  bool mayBlend_ = false;                // something speaks of modes of mixing
-  bool stopped_ = false, empty_ = false; ///< the last: the root has a size of zero
+  bool mayBlend_ = false;   // something speaks of modes of mixing
+  bool sharesClips_ = true; // neighbours may share one: there are no layers, whose paths lie in a row
+  bool clipsInside_ = false, clipsApart_ = false; // shapes of a clip have clips; they are drawn with them
+  bool stopped_ = false, empty_ = false;          ///< the last: the root has a size of zero
   enum class Mode {
     Paint,
     Clip,   // shapes alone count

@@ -19,6 +19,8 @@ bool isUsable(const Affine& m) {
       if (!(std::fabs(v) <= kMaxNumber)) return false;
   return true;
 }
+/// Whether it is a number or a percentage, as parts of a box are.
+bool isFraction(std::string_view text) { return text.find_first_not_of("+-.0123456789eE%") == text.npos; }
 void store(const Affine& m, float (&transform)[6]) {
   const double to[6] = {m.a, m.b, m.c, m.d, m.e, m.f};
   for (size_t i = 0; i < 6; ++i) transform[i] = static_cast<float>(to[i]);
@@ -48,7 +50,8 @@ std::optional<Box> Importer::effectRegion(const GradientChain& chain, const char
     const pugi::xml_attribute a = gradientAttribute(chain, name);
     const double otherwise = part * (axis == LengthAxis::X ? lengths.width : lengths.height);
     double value = otherwise;
-    if (a && !parseLength(trim(a.value()), lengths, axis, value)) {
+    const std::string_view text = trim(a.value());
+    if (a && ((!userSpace && !isFraction(text)) || !parseLength(text, lengths, axis, value))) {
       noLength(node, document_.place(a, 0), name, a.value());
       value = otherwise;
     }
@@ -68,7 +71,7 @@ std::optional<Box> Importer::effectRegion(const GradientChain& chain, const char
 
 Affine Importer::spaceOf(pugi::xml_node node, std::string_view name, const State& state) {
   if (node == document_.root()) // a box of CSS, in pixels of the page
-    return state.style.transform.empty() ? Affine{} : state.transform * inverseOf(toPage_);
+    return !state.style.isMoved() ? Affine{} : state.transform * inverseOf(toPage_);
   if (name != "use") return state.transform;
   LengthContext lengths = state.lengths; // its x and y move its own coordinates
   lengths.fontSize = state.style.fontSize;

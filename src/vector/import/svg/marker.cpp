@@ -115,6 +115,16 @@ struct Importer::Marker {
   Point reference; ///< in that viewport
 };
 
+double Importer::referenceAlong(pugi::xml_node node, const char* name, const LengthContext& lengths, LengthAxis axis,
+                                double from, double size) {
+  constexpr std::string_view words[2][3] = {{"left", "center", "right"}, {"top", "center", "bottom"}};
+  const auto& names = words[axis == LengthAxis::Y];
+  const std::string_view text = trim(node.attribute(name).value());
+  const auto* found = std::find(std::begin(names), std::end(names), text);
+  if (found != std::end(names)) return from + size * 0.5 * static_cast<double>(found - std::begin(names));
+  return length(node, {}, name, lengths, axis, 0);
+}
+
 bool Importer::readMarker(const std::string& value, pugi::xml_node node, const State& state, Marker& marker) {
   if (value.empty()) return false;
   const std::string shown = std::string("'") + value.substr(0, 60) + "'";
@@ -151,12 +161,7 @@ bool Importer::readMarker(const std::string& value, pugi::xml_node node, const S
     lengths.width = marker.box->width, lengths.height = marker.box->height;
   }
   const auto refer = [&](const char* name, LengthAxis axis, double from, double size) {
-    constexpr std::string_view words[2][3] = {{"left", "center", "right"}, {"top", "center", "bottom"}};
-    const auto& names = words[axis == LengthAxis::Y];
-    const std::string_view text = trim(target.attribute(name).value());
-    const auto* found = std::find(std::begin(names), std::end(names), text);
-    if (found != std::end(names)) return from + size * 0.5 * static_cast<double>(found - std::begin(names));
-    return length(target, {}, name, lengths, axis, 0);
+    return referenceAlong(target, name, lengths, axis, from, size);
   };
   const ViewBox whole = marker.box.value_or(ViewBox{0, 0, marker.width, marker.height});
   marker.reference = marker.fit(

@@ -110,7 +110,7 @@ std::shared_ptr<const Importer::Tiling> Importer::tilingOf(const GradientChain& 
   Affine map = surface.space;
   for (const pugi::xml_node pattern : chain.gradients) { // the property, whose attribute patternTransform is
     const Style style = styleOf(pattern, state.lengths);
-    if (style.transform.empty()) continue;
+    if (!style.isMoved()) continue;
     map = map * transformOf(pattern, style, lengths);
     break;
   }

@@ -162,7 +162,7 @@ constexpr Word<Cap> kCaps[] = {{"butt", Cap::Butt}, {"round", Cap::Round}, {"squ
 constexpr Word<Join> kJoins[] = {{"miter", Join::Miter},
                                  {"round", Join::Round},
                                  {"bevel", Join::Bevel},
-                                 {"miter-clip", Join::Miter},
+                                 {"miter-clip", Join::MiterClip},
                                  {"arcs", Join::Miter}};
 constexpr Word<bool> kInterpolations[] = {{"auto", false}, {"srgb", false}, {"linearrgb", true}};
 constexpr Word<bool> kOverflows[] = {
@@ -342,6 +342,7 @@ bool setVertical(const Context& c) {
 bool setReference(const Context& c, std::string& reference) {
   return reference = isWord(c.value, "none") ? std::string_view() : c.value, true;
 }
+constexpr Word<bool> kTransformBoxes[] = {{"view-box", false}, {"fill-box", true}, {"content-box", true}};
 constexpr Word<bool> kIsolations[] = {{"auto", false}, {"isolate", true}};
 constexpr Word<bool> kMaskTypes[] = {{"luminance", false}, {"alpha", true}};
 constexpr Word<bool> kFilterInterpolations[] = {{"auto", true}, {"srgb", false}, {"linearrgb", true}};
@@ -387,6 +388,10 @@ const Property kProperties[] = {
     GPGP_PROPERTY("clip-rule", clipRule, choose(c.value, kRules, c.style.clipRule)),
     GPGP_PROPERTY("transform", transform, (c.style.transform = c.value, true)),
     GPGP_PROPERTY("transform-origin", transformOrigin, (c.style.transformOrigin = c.value, true)),
+    GPGP_PROPERTY("translate", translate, setReference(c, c.style.translate)),
+    GPGP_PROPERTY("rotate", rotate, setReference(c, c.style.rotate)),
+    GPGP_PROPERTY("scale", scale, setReference(c, c.style.scale)),
+    GPGP_PROPERTY("transform-box", byOwnBox, choose(c.value, kTransformBoxes, c.style.byOwnBox)),
     GPGP_PROPERTY("mask", mask, setReference(c, c.style.mask)),
     GPGP_PROPERTY("mask-type", masksByAlpha, choose(c.value, kMaskTypes, c.style.masksByAlpha)),
     GPGP_PROPERTY("filter", filter, parseFilter(c.value, c.lengths, c.style.filter)),
@@ -450,6 +455,8 @@ Style Style::inherited() const {
   s.lightingColor = fresh.lightingColor;
   s.transform.clear();
   s.transformOrigin.clear();
+  s.translate.clear(), s.rotate.clear(), s.scale.clear();
+  s.byOwnBox = false;
   s.geometry.clear();
   return s;
 }
@@ -467,16 +474,14 @@ bool isGeometry(std::string_view name) {
 
 bool isPresentationAttribute(std::string_view name) {
   constexpr std::string_view unsupported[] = {"shape-rendering", "image-rendering", "clip"},
-                             no[] = {"font", "background", "background-color", "mix-blend-mode", "isolation"};
+                             no[] = {"font",           "background", "background-color",
+                                     "mix-blend-mode", "isolation",  "translate",
+                                     "rotate",         "scale",      "transform-box"};
   return (findProperty(name) && !oneOf(name, no)) || oneOf(name, unsupported);
 }
 
 bool isUnsupported(std::string_view name, std::string_view value) {
-  constexpr std::string_view names[] = {"translate",
-                                        "rotate",
-                                        "scale",
-                                        "transform-box",
-                                        "offset-path",
+  constexpr std::string_view names[] = {"offset-path",
                                         "offset",
                                         "backdrop-filter",
                                         "mask-image",
@@ -536,7 +541,8 @@ bool hasUnsupported(std::string_view value) {
       "accentcolor", "accentcolortext", "activetext",   "buttonborder",     "buttonface", "buttontext",    "canvas",
       "canvastext",  "field",           "fieldtext",    "graytext",         "highlight",  "highlighttext", "linktext",
       "mark",        "marktext",        "selecteditem", "selecteditemtext", "visitedtext"};
-  if (oneOf(trim(lower), systemColors)) return true;
+  constexpr std::string_view boxes[] = {"stroke-box", "border-box"};
+  if (oneOf(trim(lower), systemColors) || oneOf(trim(lower), boxes)) return true;
   if (lower.find('{') != lower.npos) return true;                                             // rules inside of others
   if (lower.find("(from ") != lower.npos || lower.find("( from ") != lower.npos) return true; // a colour of another one
   for (Scanner s(lower); !s.done();) {

@@ -96,7 +96,9 @@ struct Style {
   bool isolated = false, masksByAlpha = false;
   StopColor floodColor, lightingColor{{1, 1, 1, 1}, false};
   double floodOpacity = 1;
-  std::string transform, transformOrigin;
+  std::string transform, transformOrigin, translate, rotate, scale;
+  bool byOwnBox = false; ///< transform-box
+  bool isMoved() const { return !(transform.empty() && translate.empty() && rotate.empty() && scale.empty()); }
   /// x, y, r, d and others that style sheets may set in place of attributes; the last of a name counts.
   std::vector<std::pair<std::string, std::string>> geometry;
   const std::string* geometryOf(std::string_view name) const;
