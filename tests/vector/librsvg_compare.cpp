@@ -26,6 +26,7 @@
 #include "cli/shared/textures.h"
 #include "cli/vector/images.h"
 #include "cli/vector/reference.h"
+#include "cli/vector/svg_files.h"
 #include "host/files.h"
 #include "host/picture.h"
 #include "tile_difference.h"
@@ -98,7 +99,7 @@ public:
     info.maxTileEntries = 1 << 18;
     info.maxLayerPixels = 16 << 20; // as much as lavapipe binds
     info.maxLayerOperations = 1 << 14;
-    info.maxDrawings = 1 << 12;
+    info.maxDrawings = 1 << 10;
     canvas_ = session_.take(Canvas::create(session_.context(), info), "gpgpCreateCanvas");
     session_.check(canvas_.prewarm(), "gpgpPrewarm");
   }
@@ -117,6 +118,8 @@ public:
     source.messageUserData = &messages;
     cli::VectorImages images;
     images.attach(source);
+    const cli::SvgFiles files(file.string());
+    source.fileSystem = files.fileSystem();
     const Result<Blob> blob = compileSvg(source);
     if (!blob) return compared.verdict = "no drawing: " + messages.error, host::Picture{};
     if (!messages.unsupported.empty()) compared.verdict = "unsupported: " + messages.unsupported;
