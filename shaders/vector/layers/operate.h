@@ -134,3 +134,168 @@ GPGP_FN vec4 colorAt(OperationRecord o, int x, int y) {
   return vec4(vec3(c) * c.w, c.w);
 }
 #endif
+
+#if OPERATIONS == 3 || defined(__cplusplus)
+GPGP_FN float wrapped(float v, float low, float high) {
+  const float size = max(high - low, 1e-6f);
+  return v - floor((v - low) / size) * size;
+}
+// Where the operation's input is read for a point of its space: inside the input's region, as the edges say.
+GPGP_FN vec2 edgePoint(vec2 p, vec4 region, uint edges) {
+  if (edges == 1u)
+    return vec2(clamp(p.x, min(region.x + 0.5f, region.z), max(region.z - 0.5f, region.x)),
+                clamp(p.y, min(region.y + 0.5f, region.w), max(region.w - 0.5f, region.y)));
+  if (edges == 2u) return vec2(wrapped(p.x, region.x, region.z), wrapped(p.y, region.y, region.w));
+  return p;
+}
+GPGP_FN vec4 convolveAt(OperationRecord o, int x, int y) {
+  const int across = int(o.values[0].x), down = int(o.values[0].y);
+  const bool keepsAlpha = o.values[1].z != 0.0f;
+  const uint slot = floatBitsToUint(o.values[3].x), first = floatBitsToUint(o.values[3].y);
+  const vec2 middle = pointOf(o, float(x) + 0.5f, float(y) + 0.5f);
+  vec4 sum = vec4(0.0f);
+  for (int j = 0; j < down; ++j)
+    for (int i = 0; i < across; ++i) {
+      const uint entry = uint((down - 1 - j) * across + across - 1 - i);
+      const float weight = tableAt(slot, first + entry / 4u)[int(entry % 4u)];
+      const vec2 p = edgePoint(vec2(middle.x + float(i) - o.values[0].z, middle.y + float(j) - o.values[0].w),
+                               o.values[2], o.mode);
+      const vec2 q = pixelOf(o, p.x, p.y);
+      vec4 color = readBetween(o.a, q.x, q.y);
+      if (keepsAlpha) color = vec4(straightOf(color), color.w);
+      sum += color * weight;
+    }
+  const float alpha = texelAt(o.a, x, y).w;
+  vec4 color = sum / o.values[1].x + vec4(o.values[1].y * (keepsAlpha ? 1.0f : alpha));
+  color = clamp(color, vec4(0.0f), vec4(1.0f));
+  if (keepsAlpha) return vec4(vec3(color) * alpha, alpha);
+  return vec4(min(vec3(color), vec3(color.w)), color.w);
+}
+GPGP_FN vec4 neighbourhoodAt(OperationRecord o, int x, int y) {
+  if (o.kind == kOperationMorphology) {
+    const bool axisY = (o.flags & kAxisY) != 0u, most = o.mode != 0u;
+    vec4 found = texelAt(o.a, x, y);
+    for (int k = 1; k <= int(o.count); ++k) {
+      const int i = axisY ? 0 : k, j = axisY ? k : 0;
+      const vec4 before = texelAt(o.a, x - i, y - j), behind = texelAt(o.a, x + i, y + j);
+      found = most ? max(found, max(before, behind)) : min(found, min(before, behind));
+    }
+    return found;
+  }
+  if (o.kind == kOperationConvolve) return convolveAt(o, x, y);
+  if (o.kind == kOperationTile) {
+    const vec2 p = edgePoint(pointOf(o, float(x) + 0.5f, float(y) + 0.5f), o.values[2], 2u);
+    const vec2 q = pixelOf(o, p.x, p.y);
+    return readBetween(o.a, q.x, q.y);
+  }
+  const vec4 map = readB(o, x, y); // kOperationDisplace
+  const vec4 straight = vec4(straightOf(map), map.w);
+  const float u = o.values[0].x * (straight[int(o.mode % 4u)] - 0.5f);
+  const float v = o.values[0].x * (straight[int(o.mode / 4u)] - 0.5f);
+  return readBetween(o.a, float(x) + 0.5f + o.toPixel.x * u + o.toPixel.z * v,
+                     float(y) + 0.5f + o.toPixel.y * u + o.toPixel.w * v);
+}
+#endif
+
+#if OPERATIONS == 4 || defined(__cplusplus)
+GPGP_FN float easeCurve(float t) { return t * t * (3.0f - 2.0f * t); }
+// The four channels' gradients at a point of the lattice, times the way there.
+GPGP_FN vec4 latticeAt(uint slot, uint first, uint i, float x, float y) {
+  const vec4 a = tableAt(slot, first + i * 3u), b = tableAt(slot, first + i * 3u + 1u);
+  return vec4(a.x * x + a.y * y, a.z * x + a.w * y, b.x * x + b.y * y, b.z * x + b.w * y);
+}
+// The noise of the SVG specification's feTurbulence, of four channels at once. The point is that of the pixel whose
+// corner lies there, as where the specification's pixels have whole coordinates.
+GPGP_FN vec4 noiseAt(OperationRecord o, int px, int py) {
+  const uint slot = floatBitsToUint(o.values[2].x), first = floatBitsToUint(o.values[2].y);
+  const vec2 middle = pointOf(o, float(px) + 0.5f, float(py) + 0.5f);
+  float x = (middle.x - 0.5f) * o.values[0].x, y = (middle.y - 0.5f) * o.values[0].y, ratio = 1.0f;
+  const bool stitched = o.values[0].w != 0.0f;
+  int width = int(o.values[1].x), height = int(o.values[1].y), wrapX = int(o.values[1].z), wrapY = int(o.values[1].w);
+  vec4 sum = vec4(0.0f);
+  for (int octave = 0; octave < int(o.values[0].z); ++octave) {
+    const float cellX = floor(x), cellY = floor(y), rx = x - cellX, ry = y - cellY;
+    int x0 = int(cellX) + 4096, y0 = int(cellY) + 4096, x1 = x0 + 1, y1 = y0 + 1;
+    if (stitched) {
+      if (x0 >= wrapX) x0 -= width;
+      if (x1 >= wrapX) x1 -= width;
+      if (y0 >= wrapY) y0 -= height;
+      if (y1 >= wrapY) y1 -= height;
+    }
+    const uint i = uint(tableAt(slot, first + uint(x0 & 255) * 3u + 2u).x);
+    const uint k = uint(tableAt(slot, first + uint(x1 & 255) * 3u + 2u).x);
+    const uint b00 = uint(tableAt(slot, first + (i + uint(y0 & 255)) % 256u * 3u + 2u).x);
+    const uint b10 = uint(tableAt(slot, first + (k + uint(y0 & 255)) % 256u * 3u + 2u).x);
+    const uint b01 = uint(tableAt(slot, first + (i + uint(y1 & 255)) % 256u * 3u + 2u).x);
+    const uint b11 = uint(tableAt(slot, first + (k + uint(y1 & 255)) % 256u * 3u + 2u).x);
+    const float s = easeCurve(rx), t = easeCurve(ry);
+    const vec4 above = mix(latticeAt(slot, first, b00, rx, ry), latticeAt(slot, first, b10, rx - 1.0f, ry), s);
+    const vec4 below =
+        mix(latticeAt(slot, first, b01, rx, ry - 1.0f), latticeAt(slot, first, b11, rx - 1.0f, ry - 1.0f), s);
+    const vec4 noise = mix(above, below, t);
+    sum += (o.mode == 0u ? noise : abs(noise)) / ratio;
+    x *= 2.0f;
+    y *= 2.0f;
+    ratio *= 2.0f;
+    width *= 2;
+    height *= 2;
+    wrapX = 2 * wrapX - 4096;
+    wrapY = 2 * wrapY - 4096;
+  }
+  const vec4 color = clamp(o.mode == 0u ? (sum + vec4(1.0f)) * 0.5f : sum, vec4(0.0f), vec4(1.0f));
+  return vec4(vec3(color) * color.w, color.w);
+}
+#endif
+
+#if OPERATIONS == 5 || defined(__cplusplus)
+GPGP_FN float heightAt(OperationRecord o, float x, float y) {
+  const vec2 q = pixelOf(o, x, y);
+  return readBetween(o.a, q.x, q.y).w;
+}
+// The surface's slope along an axis: differences of neighbours, of rows that lie in the region (the SVG specification's
+// nine cases).
+GPGP_FN vec4 lightAt(OperationRecord o, int px, int py) {
+  const vec2 p = pointOf(o, float(px) + 0.5f, float(py) + 0.5f);
+  const vec4 region = o.values[5];
+  const float left = p.x - 1.0f >= region.x ? 1.0f : 0.0f, right = p.x + 1.0f <= region.z ? 1.0f : 0.0f;
+  const float top = p.y - 1.0f >= region.y ? 1.0f : 0.0f, bottom = p.y + 1.0f <= region.w ? 1.0f : 0.0f;
+  float slopeX = 0.0f, slopeY = 0.0f, weightsX = 0.0f, weightsY = 0.0f;
+  for (int k = -1; k <= 1; ++k) {
+    const float at = float(k), weight = k == 0 ? 2.0f : 1.0f;
+    if (k == 0 || (k < 0 ? top : bottom) > 0.0f) {
+      slopeX += weight * (heightAt(o, p.x + right, p.y + at) - heightAt(o, p.x - left, p.y + at));
+      weightsX += weight;
+    }
+    if (k == 0 || (k < 0 ? left : right) > 0.0f) {
+      slopeY += weight * (heightAt(o, p.x + at, p.y + bottom) - heightAt(o, p.x + at, p.y - top));
+      weightsY += weight;
+    }
+  }
+  const float scale = o.values[0].x;
+  const float height = scale * heightAt(o, p.x, p.y);
+  const vec3 normal = normalize(vec3(-scale * 2.0f * slopeX / (weightsX * max(left + right, 1.0f)),
+                                     -scale * 2.0f * slopeY / (weightsY * max(top + bottom, 1.0f)), 1.0f));
+  vec3 toLight = vec3(o.values[2]);
+  vec3 color = vec3(o.values[1]);
+  if (o.mode != 0u) {
+    toLight = toLight - vec3(p.x, p.y, height);
+    toLight = toLight / max(sqrt(dot(toLight, toLight)), 1e-20f);
+  }
+  if (o.mode == 2u) {
+    vec3 axis = vec3(o.values[3]) - vec3(o.values[2]);
+    axis = axis / max(sqrt(dot(axis, axis)), 1e-20f);
+    const float along = -dot(toLight, axis);
+    color = along <= 0.0f || along < o.values[3].w ? vec3(0.0f) : color * pow(along, o.values[2].w);
+  }
+  if (o.values[0].w == 0.0f) {
+    const vec3 diffuse = clamp(color * (o.values[0].y * max(dot(normal, toLight), 0.0f)), vec3(0.0f), vec3(1.0f));
+    return vec4(diffuse, 1.0f);
+  }
+  vec3 halfway = toLight + vec3(0.0f, 0.0f, 1.0f);
+  halfway = halfway / max(sqrt(dot(halfway, halfway)), 1e-20f);
+  const float shine = max(dot(normal, halfway), 0.0f);
+  const vec3 specular =
+      clamp(color * (o.values[0].y * (shine > 0.0f ? pow(shine, o.values[0].z) : 0.0f)), vec3(0.0f), vec3(1.0f));
+  return vec4(specular, max(max(specular.x, specular.y), specular.z));
+}
+#endif

@@ -51,14 +51,21 @@ GPGP_CONST uint kOperationCopy = 5u;
 GPGP_CONST uint kOperationOffset = 6u; // values[0].xy: pixels
 GPGP_CONST uint kOperationShadow = 7u; // a over values[1] where b lies, moved by values[0].xy
 GPGP_CONST uint kOperationColorMatrix = 8u;
-GPGP_CONST uint kOperationTransfer = 9u; // table: values[0].x slot, y vec4
+GPGP_CONST uint kOperationTransfer = 9u; // values[0]: slot of the table, its vec4
 GPGP_CONST uint kOperationBlend = 10u;
 GPGP_CONST uint kOperationOperator = 11u;
-GPGP_CONST uint kOperationMorphology = 12u; // along the axis `flags` says
+GPGP_CONST uint kOperationMorphology = 12u; // mode: 0 least, 1 most; along y with kAxisY
+// values[0]: order, target; values[1]: divisor, bias, 1: alpha stays; values[2]: a's region; values[3]: slot of the
+// table, its vec4; mode: edges
 GPGP_CONST uint kOperationConvolve = 13u;
-GPGP_CONST uint kOperationDisplace = 14u;
-GPGP_CONST uint kOperationTile = 15u;
+GPGP_CONST uint kOperationDisplace = 14u; // values[0].x: scale; mode: channels of b
+GPGP_CONST uint kOperationTile = 15u;     // values[2]: a's region
+// values[0]: frequency x, y, octaves, 1: stitched; values[1]: width and height of a stitch, where it wraps; values[2]:
+// slot of the lattice, its vec4; mode: 0 fractal noise, 1 turbulence
 GPGP_CONST uint kOperationTurbulence = 16u;
+// values[0]: surface scale, constant, exponent, 1: specular; values[1]: colour; values[2]: the light's place or
+// direction and the spot's exponent; values[3]: where it points and the cosine of its cone; values[5]: a's region;
+// mode: which light
 GPGP_CONST uint kOperationLight = 17u;
 
 // Flags.

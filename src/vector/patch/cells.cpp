@@ -277,6 +277,8 @@ core::Result<Patches> makePatches(const Drawing& drawing, std::pmr::memory_resou
                                   uint32_t firstPath, uint32_t count) {
   constexpr uint32_t kMostWords = (1u << 30) - 1; // what a curve's number can say
   Patches made(memory);
+  if (!drawing.plan.empty())
+    return core::makeError(GPGP_ERROR_UNSUPPORTED, "patches do not draw layers, which the drawing has");
   const uint32_t hidden = clipPaths(drawing);
   const uint32_t painting = static_cast<uint32_t>(drawing.paths.size()) - hidden;
   made.paths = std::min(count, painting - std::min(firstPath, painting));

@@ -186,6 +186,7 @@ private:
         std::copy_n(from.values, 20, step.values);
         step.firstEntry = static_cast<uint32_t>(drawing_.plan.tables.size());
         drawing_.plan.tables.insert(drawing_.plan.tables.end(), from.table, from.table + from.tableCount);
+        drawing_.plan.tables.resize((drawing_.plan.tables.size() + 3) / 4 * 4, 0.0f); // shaders read four at a time
         if (from.group) {
           const auto shown = referredSequence(from.group, depth + 1);
           if (!shown) return shown.error();

@@ -4,6 +4,7 @@
 #include "vector/patch/drawing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace gpgp::vector {
@@ -272,16 +273,40 @@ Result<void> checkPlan(const LayerPlan& plan, size_t paths, std::pmr::memory_res
     for (size_t i = 0; i < steps.size(); ++i) {
       const LayerStep& s = steps[i];
       if (s.input >= GPGP_FILTER_FIRST_STEP + i || s.input2 >= GPGP_FILTER_FIRST_STEP + i ||
-          s.sequence > plan.sequences.size() || !range(s.firstEntry, s.entryCount, plan.tables.size()))
+          s.sequence > plan.sequences.size() || !range(s.firstEntry, s.entryCount, plan.tables.size()) ||
+          s.firstEntry % 4 != 0)
         return bad("a filter refers to what is not there");
       if (wrongStep(s)) return bad("a filter's step is out of range");
     }
   }
+  if (plan.tables.size() % 4 != 0) return bad("a filter's table has an end that shaders do not read");
   if (!sane(plan.tables)) return bad("a filter's table is not finite");
   Measure measure(plan, memory);
   for (const LayerSequence& s : plan.sequences)
     if (!measure.good(s, 0)) return bad("its layers are too deep in each other, or too many");
   return {};
+}
+
+void appendLattice(float seed, std::pmr::vector<float>& to) {
+  constexpr int64_t kModulus = 2147483647, kFactor = 16807; // Park and Miller's generator
+  int64_t state = static_cast<int64_t>(std::clamp(std::trunc(seed), -2147483647.0f, 2147483520.0f));
+  if (state <= 0) state = -(state % (kModulus - 1)) + 1;
+  if (state > kModulus - 1) state = kModulus - 1;
+  const auto next = [&state] { return state = state * kFactor % kModulus; };
+  const size_t first = to.size();
+  to.resize(first + kLatticeNumbers, 0.0f);
+  for (size_t channel = 0; channel < 4; ++channel)
+    for (size_t i = 0; i < 256; ++i) {
+      double g[2];
+      for (double& v : g) v = static_cast<double>(next() % 512 - 256) / 256;
+      const double length = std::hypot(g[0], g[1]);
+      for (size_t k = 0; k < 2; ++k)
+        to[first + i * 12 + channel * 2 + k] = static_cast<float>(length > 0 ? g[k] / length : 0);
+    }
+  std::array<int, 256> order;
+  for (int i = 0; i < 256; ++i) order[static_cast<size_t>(i)] = i;
+  for (size_t i = 255; i > 0; --i) std::swap(order[i], order[static_cast<size_t>(next() % 256)]);
+  for (size_t i = 0; i < 256; ++i) to[first + i * 12 + 8] = static_cast<float>(order[i]);
 }
 
 // ---------------------------------------------------------------- bounds

@@ -87,6 +87,11 @@ core::Result<void> checkLayer(const GpgpLayer& layer, const char* name, uint32_t
 /// Checks everything that whoever executes the plan trusts: indices, depth, size, finite numbers.
 core::Result<void> checkPlan(const LayerPlan& plan, size_t paths, std::pmr::memory_resource* memory);
 
+/// The lattice of the SVG specification's feTurbulence for a seed: for each of its 256 places the gradients of four
+/// channels (x, y), the place's number in the permutation, and three zeros. Twelve numbers each.
+constexpr size_t kLatticeNumbers = 256 * 12;
+void appendLattice(float seed, std::pmr::vector<float>& to);
+
 /// Where things lie, as far as is known without a canvas: in drawing space, of steps in filter space.
 struct LayerBounds {
   explicit LayerBounds(std::pmr::memory_resource* memory)

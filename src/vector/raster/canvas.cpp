@@ -155,6 +155,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     if (auto ok = gather.plan(i, assets[i]); !ok) return ok;
   planner.finish();
   const bool composites = layered && planner.composites();
+  operationCount_ = composites ? planner.operations().size() : 0;
   const uint32_t width = composites ? planner.width() : info.width,
                  height = composites ? planner.height() : info.height; // of what is rasterised
   for (uint32_t i = 0; i < info.itemCount; ++i)

@@ -25,6 +25,10 @@ public:
   core::Result<void> draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInfo& info, CanvasHistory& history);
   bool takeCanvasReport(GpgpCanvasReport& report);
   uint32_t maxDrawings() const { return sizes_.items.items; }
+  /// For tests: what the last recording did with pictures of layers.
+  std::span<const shader::OperationRecord> operations() const {
+    return std::span(layers_.operations).first(operationCount_);
+  }
   /// Room for the assets of a recording, so that recording does not allocate.
   std::span<ItemAsset> assets(uint32_t count) { return std::span(assets_).first(count); }
 
@@ -36,6 +40,7 @@ private:
   std::pmr::vector<ItemAsset> assets_;
   ItemTables tables_;
   LayerTables layers_;
+  size_t operationCount_ = 0;                 ///< of the last recording
   std::array<uint32_t, 6> operationPasses_{}; ///< by OPERATIONS (operate.comp)
 };
 

@@ -8,7 +8,7 @@
 namespace gpgp::vector {
 
 DrawingTables packDrawing(const Drawing& drawing, const Outlines& outlines, std::pmr::memory_resource* memory) {
-  DrawingTables tables{std::pmr::vector<std::byte>(memory), 0, {}};
+  DrawingTables tables{std::pmr::vector<std::byte>(memory), 0, {}, 0, std::pmr::vector<uint32_t>(memory)};
   const auto add = [&bytes = tables.bytes](const auto& records) { // returns where, in vec4
     const auto part = std::as_bytes(std::span(records));
     const size_t at = bytes.size() / sizeof(shader::vec4);
@@ -34,7 +34,11 @@ DrawingTables packDrawing(const Drawing& drawing, const Outlines& outlines, std:
   tables.slots.clips = add(clips);
   tables.slots.layers = add(drawing.layers);
   tables.entries = add(drawing.plan.tables);
-  tables.bytes.resize((tables.bytes.size() + 15) / 16 * 16);
+  for (const LayerStep& step : drawing.plan.steps) {
+    std::pmr::vector<float> lattice(memory);
+    if (step.kind == GPGP_FILTER_TURBULENCE) appendLattice(step.values[3], lattice);
+    tables.lattices.push_back(add(lattice));
+  }
   return tables;
 }
 
@@ -57,7 +61,8 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
   for (const LayerRecord& layer : drawing.layers) asset->layerDepth_ = std::max(asset->layerDepth_, layer.depth);
   std::copy_n(drawing.bounds, 4, asset->bounds_);
   std::copy_n(drawing.viewport, 4, asset->viewport_);
-  DrawingTables tables{std::pmr::vector<std::byte>(&context.host()), 0, {}};
+  DrawingTables tables{
+      std::pmr::vector<std::byte>(&context.host()), 0, {}, 0, std::pmr::vector<uint32_t>(&context.host())};
   if (flattened) tables = packDrawing(drawing, outlines, &context.host());
   if (methods & GPGP_DRAWING_IN_PASS) {
     auto patches =
@@ -78,6 +83,7 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
   asset->pathTable_ = tables.paths;
   asset->tables_ = tables.slots;
   asset->entryTable_ = tables.entries;
+  asset->lattices_.assign(tables.lattices.begin(), tables.lattices.end());
   if (!drawing.plan.empty()) asset->setLayers(drawing, outlines);
   if (tables.bytes.size() > context.device.limits.maxStorageBufferRange)
     return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing has %zu bytes, but this device binds at most %u",

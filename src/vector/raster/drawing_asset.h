@@ -11,9 +11,10 @@ namespace gpgp::vector {
 /// A drawing's tables in one buffer: segments, paths with their boxes, paints, stops, clips, layers.
 struct DrawingTables {
   std::pmr::vector<std::byte> bytes;
-  uint32_t paths;           ///< where BoxedPaths begin, in vec4
-  shader::SlotRecord slots; ///< and the other tables
-  uint32_t entries = 0;     ///< tables of filters, four numbers in each vec4
+  uint32_t paths;                      ///< where BoxedPaths begin, in vec4
+  shader::SlotRecord slots;            ///< and the other tables
+  uint32_t entries = 0;                ///< tables of filters, four numbers in each vec4
+  std::pmr::vector<uint32_t> lattices; ///< of the steps of filters that make noise
 };
 DrawingTables packDrawing(const Drawing& drawing, const Outlines& outlines, std::pmr::memory_resource* memory);
 
@@ -38,7 +39,7 @@ public:
                                                          std::span<const GpgpPathEdit> edits = {});
   DrawingAsset(core::Context& owner, const char* name)
       : Resident(owner, core::Kind::drawing, name), plan_(&owner.host()), layerBounds_(&owner.host()),
-        ends_(&owner.host()) {}
+        lattices_(&owner.host()), ends_(&owner.host()) {}
 
   /// How many segments the first n paths have.
   uint32_t segments(size_t paths) const { return paths ? ends_[paths - 1] : 0; }
@@ -56,6 +57,7 @@ public:
   const LayerPlan& plan() const { return plan_; }                               ///< empty where it has no layers
   const LayerBounds& layerBounds() const { return layerBounds_; }
   uint32_t tableOf(uint32_t entry) const { return entryTable_ + entry / 4; } ///< of a filter, in vec4
+  uint32_t latticeOf(uint32_t step) const { return lattices_[step]; }        ///< of a filter's noise, likewise
   /// A part that is placed by itself: where its segments and paths begin in its buffer, in vec4, and how many there
   /// are.
   struct Run {
@@ -84,6 +86,7 @@ private:
   LayerPlan plan_;
   LayerBounds layerBounds_;
   uint32_t entryTable_ = 0;
+  std::pmr::vector<uint32_t> lattices_;
   std::pmr::vector<uint32_t> ends_; // of segments, by path
   std::optional<Kept> kept_;        // where it is editable
   struct Hit {

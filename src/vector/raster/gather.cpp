@@ -113,7 +113,10 @@ Result<void> Gather::planDrawing(const DrawingAsset& drawing, const Map& map, fl
     return {};
   }
   const shader::vec4 nothing(0);
-  if (auto ok = planner_->addLayered(drawing, map, opacity, own.hidden ? nothing : own.scissor); !ok)
+  const auto slot = bind(drawing); // where filters find their tables
+  if (!slot) return slot.error();
+  slots[*slot] = drawing.tables();
+  if (auto ok = planner_->addLayered(drawing, *slot, map, opacity, own.hidden ? nothing : own.scissor); !ok)
     return wrong(ok.error().code, ": %s", ok.error().text);
   return {};
 }
@@ -128,7 +131,7 @@ void Gather::beginPlain() {
   ++unit_;
 }
 
-Result<void> Gather::addLayered(const DrawingAsset& drawing, const Map& map, uint32_t firstImage) {
+Result<void> Gather::addLayered(const DrawingAsset& drawing, uint32_t firstImage) {
   const uint32_t unit = unit_++;
   full_ = full_ || !planner_ || unit >= planner_->units();
   if (full_) {
@@ -143,7 +146,7 @@ Result<void> Gather::addLayered(const DrawingAsset& drawing, const Map& map, uin
     region_ = run.region;
     const PixelBox& box = region_.box;
     const Chain inside{{float(box.left), float(box.top), float(box.right), float(box.bottom)}, 0, false};
-    const uint32_t source = addSource(map, run.opacity, firstImage, inside);
+    const uint32_t source = addSource(run.map, run.opacity, firstImage, inside);
     if (source == kNone && !full_) continue; // covers nothing
     addRun(drawing, run.run, source, *slot);
   }
@@ -192,7 +195,7 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
   if (drawing.images() && (firstImage > info_.imageCount || drawing.images() > info_.imageCount - firstImage))
     return wrong(GPGP_ERROR_INVALID_ARGUMENT, ": its drawing needs %u images from images[%u] on; imageCount is %u",
                  drawing.images(), firstImage, info_.imageCount);
-  if (!drawing.plan().empty()) return addLayered(drawing, map, firstImage);
+  if (!drawing.plan().empty()) return addLayered(drawing, firstImage);
   beginPlain();
   if (clip.layer && tables_.layers[clip.layer - 1].depth + drawing.layerDepth() > shader::kMaxLayerDepth)
     return wrong(GPGP_ERROR_UNSUPPORTED, ": with those of its drawing, more than %u groups fade in each other",

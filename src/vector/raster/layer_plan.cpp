@@ -135,10 +135,10 @@ LayerPlanner::Picture LayerPlanner::picture(const PixelBox& box, bool srgb) {
   return made;
 }
 
-void LayerPlanner::place(uint32_t run, float opacity, const Picture& where) {
+void LayerPlanner::place(uint32_t run, float opacity, const Picture& where, const Map& map) {
   if (state_.runs < tables_.runs.size())
     tables_.runs[state_.runs] = {
-        unit_, run, opacity, {where.box, static_cast<int>(where.x), static_cast<int>(where.y)}};
+        unit_, run, opacity, {where.box, static_cast<int>(where.x), static_cast<int>(where.y)}, map};
   ++state_.runs;
 }
 
@@ -173,23 +173,20 @@ void LayerPlanner::addPlain() {
   if (!open_) {
     base_ = region(canvas_);
     open_ = true;
-    place(UINT32_MAX, 1, base_); // says where it lies
+    place(UINT32_MAX, 1, base_, {}); // says where it lies
     composite(root_, base_, 1, GPGP_BLEND_NORMAL);
   }
   endUnit(false);
 }
 
-Result<void> LayerPlanner::addLayered(const DrawingAsset& drawing, const Map& map, float opacity,
+Result<void> LayerPlanner::addLayered(const DrawingAsset& drawing, uint32_t slot, const Map& map, float opacity,
                                       const shader::vec4& visible) {
   const LayerPlan& plan = drawing.plan();
   for (const LayerNode& node : plan.nodes)
     if (map.projective() && (node.filtered || node.mask))
       return makeError(GPGP_ERROR_UNSUPPORTED, "a drawing with filters or masks is not drawn in perspective");
-  for (const LayerStep& s : plan.steps)
-    if (s.kind >= GPGP_FILTER_MORPHOLOGY)
-      return makeError(GPGP_ERROR_UNSUPPORTED, "a drawing has a filter whose step of kind %d is not drawn yet", s.kind);
   layered_ = true;
-  const Around around{drawing, plan, drawing.layerBounds(), map};
+  const Around around{drawing, plan, drawing.layerBounds(), map, slot};
   const auto side = [](float v, bool up) {
     const double at = std::clamp(static_cast<double>(v), double(-kFar), double(kFar));
     return static_cast<int>(up ? std::ceil(at) : std::floor(at));
@@ -265,7 +262,7 @@ void LayerPlanner::sequence(const Around& a, const LayerSequence& s, const Pictu
     const PixelBox box = meet(pixels(a.map, a.bounds.runs[token.index]), onto.box);
     if (box.empty()) continue;
     const Picture where = clean ? onto : region(box);
-    place(token.index, opacity, where);
+    place(token.index, opacity, where, a.map);
     if (!clean) composite(onto, where, 1, GPGP_BLEND_NORMAL);
   }
 }
@@ -286,7 +283,7 @@ void LayerPlanner::layer(const Around& a, uint32_t index, const Picture& onto, f
   Picture clip, mask;
   if (node.clip) {
     clip = region(meet(shown, pixels(a.map, a.bounds.runs[node.clip - 1])));
-    place(node.clip - 1, 1, clip);
+    place(node.clip - 1, 1, clip, a.map);
   }
   if (node.mask) {
     mask = region(meet(shown, pixels(a.map, a.bounds.sequences[node.mask - 1])));
@@ -475,14 +472,60 @@ LayerPlanner::Picture LayerPlanner::step(const Around& a, const LayerNode& node,
     finish(o);
     return result;
   }
+  case GPGP_FILTER_MORPHOLOGY: {
+    const double reach[2] = {reachX(space, double(v[0]), double(v[1])), reachY(space, double(v[0]), double(v[1]))};
+    Picture current = as(first, srgb);
+    for (int axis = 0; axis < 2; ++axis) {
+      const double pixels = std::round(reach[axis]);
+      if (pixels < 1) continue;
+      // The first pass leaves what the second one reads.
+      PixelBox box = axis == 0 ? grow(need, 0, std::round(reach[1])) : need;
+      box = meet(box, grow(current.box, axis == 0 ? pixels : 0, axis == 1 ? pixels : 0));
+      if (box.empty()) return Picture{{}, false, srgb, 0, 0, 0};
+      const Picture next = picture(box, srgb);
+      OperationRecord& o = operation(shader::kOperationMorphology, kNeighbourhoods, next);
+      o.a = recordOf(current);
+      o.mode = static_cast<uint32_t>(s.mode);
+      o.flags = axis == 1 ? shader::kAxisY : 0;
+      o.count = static_cast<uint32_t>(std::min(pixels, 32768.0));
+      current = next;
+    }
+    const Picture result = picture(need, srgb);
+    OperationRecord& o = operation(shader::kOperationCopy, kColors, result);
+    convertA(o, current, srgb);
+    finish(o);
+    return result;
+  }
+  case GPGP_FILTER_GROUP: {
+    const Map map = compose(space, toMap6(v));
+    const Picture shown = region(need);
+    sequence({a.drawing, a.plan, a.bounds, map, a.slot}, a.plan.sequences[s.sequence - 1], shown, true, 1);
+    const Picture result = picture(need, srgb);
+    OperationRecord& o = operation(shader::kOperationCopy, kColors, result);
+    convertA(o, shown, srgb);
+    finish(o);
+    return result;
+  }
   default: break;
   }
-  const bool between = s.kind == GPGP_FILTER_OFFSET;
+  const bool between =
+      s.kind == GPGP_FILTER_OFFSET || (s.kind >= GPGP_FILTER_CONVOLVE_MATRIX && s.kind != GPGP_FILTER_TURBULENCE);
+  const bool near =
+      s.kind == GPGP_FILTER_CONVOLVE_MATRIX || s.kind == GPGP_FILTER_DISPLACEMENT_MAP || s.kind == GPGP_FILTER_TILE;
+  const bool lights = s.kind == GPGP_FILTER_DIFFUSE_LIGHTING || s.kind == GPGP_FILTER_SPECULAR_LIGHTING;
   const Picture from = between ? as(first, srgb) : first;
   const Picture result = picture(need, srgb);
-  OperationRecord& o = operation(shader::kOperationCopy, kColors, result);
+  const float* inputRegion = s.input >= GPGP_FILTER_FIRST_STEP
+                                 ? a.plan.stepsOf(node)[s.input - GPGP_FILTER_FIRST_STEP].region
+                                 : node.filterRegion;
+  const shader::vec4 inside{inputRegion[0], inputRegion[1], inputRegion[2], inputRegion[3]};
+  const uint32_t pass = near ? kNeighbourhoods : lights ? kLights : s.kind == GPGP_FILTER_TURBULENCE ? kNoise : kColors;
+  OperationRecord& o = operation(shader::kOperationCopy, pass, result);
   convertA(o, from, srgb);
   finish(o);
+  const auto table = [&](uint32_t at) { // in the drawing's buffer
+    return shader::vec4{shader::uintBitsToFloat(a.slot), shader::uintBitsToFloat(at), 0, 0};
+  };
   switch (s.kind) {
   case GPGP_FILTER_FLOOD:
     o.kind = shader::kOperationFlood;
@@ -505,7 +548,7 @@ LayerPlanner::Picture LayerPlanner::step(const Around& a, const LayerNode& node,
     break;
   case GPGP_FILTER_COMPONENT_TRANSFER:
     o.kind = shader::kOperationTransfer;
-    o.values[0].y = shader::uintBitsToFloat(a.drawing.tableOf(s.firstEntry));
+    o.values[0] = table(a.drawing.tableOf(s.firstEntry));
     break;
   case GPGP_FILTER_BLEND:
     o.kind = shader::kOperationBlend;
@@ -518,6 +561,59 @@ LayerPlanner::Picture LayerPlanner::step(const Around& a, const LayerNode& node,
     o.values[0] = {v[0], v[1], v[2], v[3]};
     convertB(o, second, srgb);
     break;
+  case GPGP_FILTER_CONVOLVE_MATRIX:
+    o.kind = shader::kOperationConvolve;
+    o.mode = static_cast<uint32_t>(s.mode);
+    o.values[0] = {v[0], v[1], v[2], v[3]};
+    o.values[1] = {v[4], v[5], v[6], 0};
+    o.values[2] = inside;
+    o.values[3] = table(a.drawing.tableOf(s.firstEntry));
+    break;
+  case GPGP_FILTER_DISPLACEMENT_MAP:
+    o.kind = shader::kOperationDisplace;
+    o.mode = static_cast<uint32_t>(s.mode);
+    o.values[0].x = v[0];
+    convertB(o, second, srgb);
+    break;
+  case GPGP_FILTER_TILE:
+    o.kind = shader::kOperationTile;
+    o.values[2] = inside;
+    break;
+  case GPGP_FILTER_TURBULENCE: {
+    o.kind = shader::kOperationTurbulence;
+    o.mode = static_cast<uint32_t>(s.mode);
+    float frequency[2] = {v[0], v[1]};
+    for (int k = 0; k < 2; ++k) {
+      if (v[4] == 0) continue;
+      // The nearest frequency of which a whole number of waves fits; then where the lattice begins anew.
+      const float size = s.region[2 + k] - s.region[k];
+      if (frequency[k] != 0 && size > 0) {
+        const float low = std::floor(size * frequency[k]) / size, high = std::ceil(size * frequency[k]) / size;
+        frequency[k] = low > 0 && frequency[k] / low < high / frequency[k] ? low : high;
+      }
+      o.values[1][k] = std::floor(size * frequency[k] + 0.5f);
+      o.values[1][2 + k] = std::floor(s.region[k] * frequency[k]) + 4096 + o.values[1][k];
+    }
+    o.values[0] = {frequency[0], frequency[1], v[2], v[4]};
+    o.values[2] = table(a.drawing.latticeOf(static_cast<uint32_t>(&s - a.plan.steps.data())));
+    break;
+  }
+  case GPGP_FILTER_DIFFUSE_LIGHTING:
+  case GPGP_FILTER_SPECULAR_LIGHTING: {
+    const bool specular = s.kind == GPGP_FILTER_SPECULAR_LIGHTING;
+    const float* light = v + (specular ? 6 : 5);
+    o.kind = shader::kOperationLight;
+    o.mode = static_cast<uint32_t>(s.mode);
+    o.values[0] = {v[0], v[1], specular ? v[5] : 0, specular ? 1.f : 0.f};
+    o.values[1] = floodColor(v + 2, 1, srgb);
+    o.values[2] = {light[0], light[1], light[2], light[6]};
+    if (s.mode == GPGP_LIGHT_DISTANT)
+      o.values[2] = {std::cos(light[0]) * std::cos(light[1]), std::sin(light[0]) * std::cos(light[1]),
+                     std::sin(light[1]), 0};
+    o.values[3] = {light[3], light[4], light[5], light[7]};
+    o.values[5] = inside;
+    break;
+  }
   default: break;
   }
   return result;

@@ -36,6 +36,7 @@ struct PlacedRun {
   uint32_t run;
   float opacity;
   LayerRegion region;
+  Map map; ///< drawing space to the canvas
 };
 
 /// Room for what one recording has, made once.
@@ -70,7 +71,7 @@ public:
   /// A drawing without layers, a text, shapes.
   void addPlain();
   /// `visible`: left, top, right, bottom in pixels. The error says what is not supported; it has no place.
-  core::Result<void> addLayered(const DrawingAsset& drawing, const Map& map, float opacity,
+  core::Result<void> addLayered(const DrawingAsset& drawing, uint32_t slot, const Map& map, float opacity,
                                 const shader::vec4& visible);
   /// Call behind the last unit.
   void finish();
@@ -102,12 +103,13 @@ private:
     const LayerPlan& plan;
     const LayerBounds& bounds;
     const Map& map;
+    uint32_t slot; ///< of the drawing's buffer
   };
   bool fits() const;
   void endUnit(bool layered);
   Picture region(const PixelBox& box);
   Picture picture(const PixelBox& box, bool srgb);
-  void place(uint32_t run, float opacity, const Picture& where);
+  void place(uint32_t run, float opacity, const Picture& where, const Map& map);
   shader::OperationRecord& operation(uint32_t kind, uint32_t pass, const Picture& result);
   shader::OperationRecord& composite(const Picture& onto, const Picture& from, float opacity, uint32_t blend);
 
