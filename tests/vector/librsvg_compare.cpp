@@ -95,7 +95,7 @@ public:
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
     info.base = session_.recorderInfo("comparison");
     info.maxWidth = info.maxHeight = size;
-    info.maxPaths = 1 << 20;
+    info.maxPaths = 1 << 18;
     info.maxTileEntries = 1 << 18;
     info.maxLayerPixels = 16 << 20; // as much as lavapipe binds
     info.maxLayerOperations = 1 << 14;
