@@ -126,7 +126,9 @@ public:
     GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
     info.data = blob->data();
     info.size = blob->size();
-    const Drawing drawing = session_.take(Drawing::create(session_.context(), info), "gpgpCreateDrawing");
+    Result<Drawing> created = Drawing::create(session_.context(), info);
+    if (!created) return compared.verdict = "it does not fit on the device", host::Picture{};
+    const Drawing drawing = std::move(*created);
     const GpgpDrawingInfo facts = session_.take(drawing.info(), "gpgpGetDrawingInfo");
     const float width = facts.viewport[2], height = facts.viewport[3];
     if (!(width > 0 && height > 0)) return compared.verdict = "empty", host::Picture{};

@@ -404,6 +404,10 @@ TEST(SvgLayers, InputsAndRegions) {
        kUser + " primitiveUnits='objectBoundingBox'",
        {"flood [30 20 40 30] 0 0 0 1", "offset 0 [30 20 40 30] 20 10"}},
       {"<feGaussianBlur stdDeviation='.1'/>", " primitiveUnits='objectBoundingBox'", {"blur S [6 18 54 42] 4 2"}},
+      // What are no parts of the box do not count; em is of where it stands.
+      {"<feFlood x='1em' width='2em'/>", kUser + " style='font-size:20px'", {"flood [20 0 60 90] 0 0 0 1"}},
+      {"<feFlood/>", " filterUnits='userSpaceOnUse' x='1em' y='0' width='9' height='9' style='font-size:20px'",
+       {"flood [20 0 29 9] 0 0 0 1"}},
       // Names: the last one counts, those unknown mean what comes before.
       {"<feFlood result='a'/><feFlood flood-color='red' result='a'/><feOffset in='a'/><feOffset in='a' "
        "result='SourceGraphic'/>"
@@ -423,6 +427,9 @@ TEST(SvgLayers, InputsAndRegions) {
   EXPECT_EQ(said,
             (Texts{"test.svg:2:105: warning: <feOffset> has in 'nix', which is not valid; ignored",
                    "test.svg:2:111: warning: in 'BackgroundImage' is not supported: <feOffset> is drawn without it"}));
+  EXPECT_EQ(steps("<feFlood x='1em'/>", " primitiveUnits='objectBoundingBox' x='1em'", &said),
+            Texts{"flood [6 18 54 42] 0 0 0 1"});
+  EXPECT_EQ(said.size(), 2u);
   const Import i =
       page("<filter id='a' x='0' y='0' width='1' height='1'><feOffset dx='1'/></filter><filter id='b' y='-1' "
            "href='#a'/><filter id='f' height='3' href='#b'/>" +

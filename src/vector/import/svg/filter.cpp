@@ -86,7 +86,7 @@ Box Importer::FilterReader::subregion(const Primitive& p, const std::vector<uint
     for (const uint32_t input : inputs) unite(whole, regionOfInput(input));
   }
   LengthContext lengths = state.lengths;
-  lengths.fontSize = state.style.fontSize;
+  lengths.fontSize = p.style.fontSize;
   if (byBox_) lengths.width = lengths.height = 1;
   const double bw = unit_.right - unit_.left, bh = unit_.bottom - unit_.top;
   const auto along = [&](const char* name, LengthAxis axis, double otherwise) {
@@ -96,7 +96,7 @@ Box Importer::FilterReader::subregion(const Primitive& p, const std::vector<uint
       importer.noLength(p.node, importer.document_.place(p.node.attribute(name), 0), name, text);
       return otherwise;
     }
-    double value = importer.length(p.node, {}, name, lengths, axis, 0, &given);
+    double value = importer.length(p.node, {}, name, lengths, axis, 0, &given); // by no style sheet
     if (!given) return otherwise;
     const bool isX = axis == LengthAxis::X;
     if (byBox_) value *= isX ? bw : bh;

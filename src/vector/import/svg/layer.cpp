@@ -44,7 +44,7 @@ std::optional<Box> Importer::effectRegion(const GradientChain& chain, const char
   const bool userSpace = unit == "userSpaceOnUse";
   if (units && !userSpace && unit != "objectBoundingBox") ignored(node, units);
   LengthContext lengths = state.lengths;
-  lengths.fontSize = state.style.fontSize;
+  lengths.fontSize = styleOf(node, state.lengths).fontSize; // where the attributes are
   if (!userSpace) lengths.width = lengths.height = 1;
   const auto along = [&](const char* name, LengthAxis axis, double part) {
     const pugi::xml_attribute a = gradientAttribute(chain, name);
