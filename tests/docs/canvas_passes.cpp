@@ -10,6 +10,7 @@ core::PassList canvasPasses(bool software) {
   sizes.targets = GPGP_CANVAS_TARGET_HISTORY | GPGP_CANVAS_TARGET_RGBA8 | GPGP_CANVAS_TARGET_RGBA16F;
   sizes.items = {16, 1024, 16, 1024};
   sizes.software = software;
+  if (!software) sizes.layers = {1 << 20, 64}; // their passes are the same there
   return vector::describePasses(sizes, deviceOf(software), std::pmr::get_default_resource());
 }
 

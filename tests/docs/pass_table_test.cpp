@@ -119,10 +119,10 @@ std::string interpreters(const ShaderFiles& files) {
 std::string page() {
   const ShaderFiles files;
   return "# Passes\n\n"
-         "Each recorder has a list of passes. From it come barriers, scratch, debug labels and timestamps.\n"
-         "`pass_table_test --write` makes these tables, and the test fails if they are out of date. Files lie\n"
+         "Each recorder has a list of passes. From it come barriers, scratch, labels and timestamps.\n"
+         "`pass_table_test --write` makes these tables; the test compares them. Files lie\n"
          "below `shaders/`. Forms of a pass, of which a recording runs one, share a row, and so do passes of one\n"
-         "file with the same resources. What a pass does is in [spawn](spawn.md), [vector](vector.md),\n"
+         "file with the same resources. What they do is in [spawn](spawn.md), [vector](vector.md),\n"
          "[visibility](visibility.md) and [atlas](atlas.md).\n\n"
          "## Spawn\n\nOf ordered instances, with colliders:\n\n" +
          tableOf(test::spawnPasses(false), files) + "\nOf ordered vertices:\n\n" +
@@ -130,7 +130,7 @@ std::string page() {
          "\nForms of the interpreter, which pass `derive` runs for grammars without a kernel:\n\n" +
          interpreters(files) + "\n## Vector\n\n" + tableOf(test::canvasPasses(false), files) +
          "\n### On software devices\n\n" + tableOf(test::canvasPasses(true), files) +
-         "\n## Visibility\n\nWith all methods. Without 64-bit atomics there are the passes `ids` as well.\n\n" +
+         "\n## Visibility\n\nWith all methods. Without 64-bit atomics there are passes `ids`, too.\n\n" +
          tableOf(test::visibilityPasses(), files) + "\n### Shading atlas\n\n" + tableOf(test::atlasPasses(), files);
 }
 } // namespace

@@ -419,4 +419,44 @@ TEST_F(LayersTest, WhatIsWrongIsNamed) {
   refused([](Scene&, GpgpLayer& l) { l.filterTransform[0] = 0; }, "filterTransform has no inverse");
 }
 
+// ---------------------------------------------------------------- baked
+
+/// A drawing with layers is the same when it is read back; whatever is changed in it is refused or harmless.
+TEST(BakedLayers, AreReadOrRefused) {
+  Scene scene;
+  GpgpLayer layer =
+      scene.filter({step(GPGP_FILTER_GAUSSIAN_BLUR, {3, 3}), step(GPGP_FILTER_TURBULENCE, {0.1f, 0.1f, 2})});
+  layer.mask = 3;
+  layer.blend = GPGP_BLEND_SCREEN;
+  const uint32_t outer = scene.group(0, 0.5f), group = scene.group(outer, 1, &layer), mask = scene.group();
+  scene.clip(outer, rectangle(0, 0, 30, 30));
+  scene.add(rectangle(0, 0, 20, 20), outer);
+  scene.add(rectangle(5, 5, 25, 25), group);
+  scene.add(rectangle(0, 0, 15, 15), mask);
+  const auto memory = std::pmr::get_default_resource();
+  const auto made = vector::makeDrawing(scene.paths(), scene.groups, memory);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->plan.nodes.size(), 2u); // the clipped group is one as well
+  std::pmr::vector<std::byte> bytes = vector::bake(*made, memory);
+  const auto read = vector::loadBaked(bytes, memory);
+  ASSERT_TRUE(read) << read.error().text;
+  EXPECT_EQ(vector::bake(*read, memory), bytes);
+
+  size_t refused = 0;
+  for (size_t at = 16; at + 4 <= bytes.size(); at += 4)
+    for (const uint32_t value : {0u, 1u, 3u, 0x7fc00000u, 0xffffffffu}) {
+      auto changed = bytes;
+      std::memcpy(changed.data() + at, &value, 4);
+      const uint64_t sum = vector::checksum(std::span(changed).subspan(16));
+      std::memcpy(changed.data() + 8, &sum, 8);
+      const auto loaded = vector::loadBaked(changed, memory);
+      refused += !loaded;
+      if (loaded && !loaded->plan.empty()) {
+        const std::vector<vector::Box> boxes(loaded->plan.runs.size(), {0, 0, 9, 9});
+        vector::boundsOf(loaded->plan, boxes, memory);
+      }
+    }
+  EXPECT_GT(refused, 500u);
+}
+
 } // namespace

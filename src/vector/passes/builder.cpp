@@ -48,17 +48,16 @@ PassBuilder::PassBuilder(const CanvasSizes& canvas, const core::Device& device, 
   // Software devices have lists of pieces and of rows of tiles there (pieces.glsl), and a segment behind all, which
   // invocations write that have none.
   const VkDeviceSize rowCount = sizes.maxRows();
-  segments = list.add({"flattened segments", scratch,
-                       sizes.software ? (rowCount + 1) * 16 : rowCount * sizeof(shader::FlatSegmentRecord)});
-  rows = list.add(
-      {"rows of flattened segments", scratch, sizes.software ? (sizes.maxWords + rowCount) * 16 : rowCount * 4});
+  segments = list.add(
+      {"flat segments", scratch, sizes.software ? (rowCount + 1) * 16 : rowCount * sizeof(shader::FlatSegmentRecord)});
+  rows = list.add({"segment rows", scratch, sizes.software ? (sizes.maxWords + rowCount) * 16 : rowCount * 4});
   shapes = list.add({"shapes", scratch, shapeBytes});
   const VkDeviceSize keptTiles = sizes.software ? 0 : std::min<VkDeviceSize>(sizes.tiles(), shader::kTilesAside);
-  aside = list.add({"tiles painted aside", scratch, std::max<VkDeviceSize>(keptTiles * 64 * 16, 16)});
+  aside = list.add({"tiles aside", scratch, std::max<VkDeviceSize>(keptTiles * 64 * 16, 16)});
   pictures = list.add({"pictures", scratch, std::max<VkDeviceSize>(VkDeviceSize(sizes.layers.pixels) * 8, 16)});
   operations =
       list.add({"operations", buffer, VkDeviceSize(sizes.layers.operations) * sizeof(shader::OperationRecord), true});
-  layeredHistory = list.add({"history of layers", buffer, 0, true});
+  layeredHistory = list.add({"layered history", buffer, 0, true});
   assert(pictures == shader::kBindPictures && operations == shader::kBindOperations &&
          layeredHistory == shader::kBindLayeredHistory);
   assert(history == shader::kBindHistory && fromHost == shader::kBindConstants && items == shader::kBindItems &&

@@ -5,8 +5,8 @@ namespace gpgp::vector {
 using enum core::UseKind;
 
 void addLayers(PassBuilder& b) {
-  static constexpr const char* kNames[] = {"composite",    "blur",        "filter colours", "filter neighbourhoods",
-                                           "filter noise", "filter light"};
+  static constexpr const char* kNames[] = {"composite",     "blur",         "filter, colours", "filter, neighbourhoods",
+                                           "filter, noise", "filter, light"};
   for (uint32_t k = 0; k < std::size(kNames); ++k)
     b.dispatch(kNames[k], vector_operate[k], {{b.operations, read}, {b.pictures, readWrite}}, kPresents, UINT32_MAX)
         .stepped = true;

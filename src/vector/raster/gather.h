@@ -54,7 +54,7 @@ public:
   /// entries small glyphs may take for themselves (small_glyphs.comp). `planner`: of recordings that show layers; null
   /// in others.
   Gather(core::Context& context, const ItemBudgets& budgets, ItemTables& tables, shader::PlacementRecord* placed,
-         const GpgpCanvasInfo& info, uint32_t smallGlyphRoom, LayerPlanner* planner)
+         const GpgpCanvasInfo& info, uint32_t smallGlyphRoom, LayerPlanner* planner = nullptr)
       : planner_(planner), context_(context), budgets_(budgets), tables_(tables), placed_(placed), info_(info),
         smallGlyphRoom_(smallGlyphRoom) {}
 
