@@ -406,7 +406,8 @@ TEST(SvgLayers, InputsAndRegions) {
       {"<feGaussianBlur stdDeviation='.1'/>", " primitiveUnits='objectBoundingBox'", {"blur S [6 18 54 42] 4 2"}},
       // What are no parts of the box do not count; em is of where it stands.
       {"<feFlood x='1em' width='2em'/>", kUser + " style='font-size:20px'", {"flood [20 0 60 90] 0 0 0 1"}},
-      {"<feFlood/>", " filterUnits='userSpaceOnUse' x='1em' y='0' width='9' height='9' style='font-size:20px'",
+      {"<feFlood/>",
+       " filterUnits='userSpaceOnUse' x='1em' y='0' width='9' height='9' style='font-size:20px'",
        {"flood [20 0 29 9] 0 0 0 1"}},
       // Names: the last one counts, those unknown mean what comes before.
       {"<feFlood result='a'/><feFlood flood-color='red' result='a'/><feOffset in='a'/><feOffset in='a' "
@@ -688,6 +689,31 @@ TEST(SvgLayers, ClipsAreNotSharedAroundLayers) {
   EXPECT_NE(clipOf(0), 0u);
   EXPECT_NE(clipOf(2), 0u);
   EXPECT_NE(clipOf(0), clipOf(2));
+}
+
+TEST(SvgLayers, WithoutLayersTheyAreNamed) {
+  const auto without = [](const std::string& inside) {
+    const Import i = import("<svg xmlns='http://www.w3.org/2000/svg' width='100' height='100'>" + inside + "</svg>", {},
+                            1, nullptr, false);
+    EXPECT_TRUE(layersOf(i).empty()) << inside;
+    EXPECT_GE(i.drawing.paths.size(), 1u) << inside;
+    return i.messages;
+  };
+  const Texts left{
+      "W line 1: mask, filter or mix-blend-mode is not drawn inside a render pass: <rect> is drawn without it"};
+  EXPECT_EQ(without("<mask id='m'>" + kWhite + "</mask>" + kRect + "mask='url(#m)'/>"), left);
+  EXPECT_EQ(without(kRect + "style='filter:blur(2px)'/>"), left);
+  EXPECT_EQ(without(kRect + "style='mix-blend-mode:screen'/>"), left);
+  EXPECT_EQ(without("<g style='isolation:isolate'>" + kRect + "/></g>"), Texts());
+  EXPECT_EQ(
+      without("<clipPath id='h'><path d='M0 0h9v9'/></clipPath><clipPath id='c'><rect width='9' height='9' "
+              "clip-path='url(#h)'/></clipPath>" +
+              kRect + "clip-path='url(#c)'/>"),
+      Texts{"W line 1: clip-path inside a clipPath is not drawn inside a render pass: <clipPath> is drawn without it"});
+  std::string fading;
+  for (int i = 0; i < 5; ++i) fading = "<g opacity='.9'>" + fading + "<path d='M0 0h9v9'/><path d='M0 0h9v9'/></g>";
+  EXPECT_EQ(without(fading),
+            Texts{"W line 1: opacity of <g>, inside too many that fade, is applied to each of its paths"});
 }
 
 TEST(SvgLayers, SymbolsHaveReferences) {

@@ -109,7 +109,10 @@ void Importer::clip(pugi::xml_node node, std::string_view name, State& state, co
     mode_ = Mode::Clip;
     clipsInside_ = clipsApart_ = false;
     visitChildren(target, inner);
-    const bool isMask = clipsInside_;
+    const bool isMask = clipsInside_ && detail_.layers;
+    if (clipsInside_ && !isMask)
+      reporter_.warn(document_.place(target), "clip-path inside a clipPath is not drawn inside a render pass: " +
+                                                  element(target) + " is drawn without it");
     std::swap(paths, result_.paths);
     if (isMask) { // shapes that have clips themselves: they cover what is shown
       const auto layer = std::make_shared<ImportedLayer>();

@@ -16,11 +16,12 @@
 
 namespace gpgp::vector::svg {
 
-/// How finely strokes and arcs are made.
+/// How finely strokes and arcs are made, and for whom.
 struct ImportDetail {
   double scale = 1;      ///< the largest at which the drawing is shown, pixels per pixel of the page
   double strokes = 0.05; ///< they are off by less than this, in pixels at that scale
   double arcs = 1e-4;    ///< likewise
+  bool layers = true;    ///< false: whoever draws it has none; what would need one is left out, which is said
 };
 
 struct ImportLimits {

@@ -209,14 +209,17 @@ void Importer::grouped(pugi::xml_node node, std::string_view name, State& state,
                    "mask, filter or mix-blend-mode " + why + ": " + element(node) + " is drawn without it");
   };
   const uint32_t depth = state.clips + state.fading + state.layers;
+  const bool fits = detail_.layers ? depth < GPGP_MAX_LAYER_DEPTH : state.fading < shader::kMaxLayerDepth;
+  if (effects && !detail_.layers) without("is not drawn inside a render pass");
   if (effects && depth >= GPGP_MAX_LAYER_DEPTH) without("is inside too many others");
   if (effects && ++layerCount_ > limits_.layers)
     without("is one more than the " + std::to_string(limits_.layers) + " that a drawing can have");
   if (effects && (masked || filters) && !isUsable(space)) without("has coordinates that are too large or too small");
-  const bool fades = opacity < 1 && depth < GPGP_MAX_LAYER_DEPTH;
+  const bool fades = opacity < 1 && fits;
   if (!fades) state.opacity *= opacity;
   // What isolates others without being drawn apart itself.
-  const bool isolates = mayBlend_ && !effects && !fades && (style.isolated || clips) && depth < GPGP_MAX_LAYER_DEPTH;
+  const bool isolates =
+      mayBlend_ && detail_.layers && !effects && !fades && (style.isolated || clips) && depth < GPGP_MAX_LAYER_DEPTH;
   const size_t blendsBefore = blendCount_;
   uint32_t group = 0; // 1 + index
   if (effects || fades || isolates) {

@@ -158,7 +158,8 @@ void Importer::emitTiles(const Shape& shape, const Affine& transform, GpgpFillRu
   State inner = tiling.state;
   if (inner.clips + 1 >= shader::kMaxClipDepth) return refused("inside too many clips, which is not supported");
   const bool fades = opacity < 1;
-  if (inner.clips + inner.fading + inner.layers + 1 >= GPGP_MAX_LAYER_DEPTH)
+  if (inner.clips + inner.fading + inner.layers + 1 >= GPGP_MAX_LAYER_DEPTH ||
+      (fades && !detail_.layers && inner.fading >= shader::kMaxLayerDepth))
     return refused("inside too many that fade or are masked, which is not supported");
   if (inner.depth >= limits_.depth) return refused("nested too deeply, which is not supported");
 
