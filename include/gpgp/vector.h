@@ -174,8 +174,8 @@ typedef struct GpgpSvgReport {
 /** Receives a stage of the conversion as SVG text, to be looked at. The text is not null-terminated. @lifetime call */
 typedef void(GPGP_CALL* GpgpStageFn)(void* userData, const char* stage, const char* svg, size_t size);
 
-/** Receives an image that an <image> element embeds as a data: URI. The bytes are the decoded base64: a PNG, JPEG or
- *  other file. An image that several elements share is passed once.
+/** Receives an image of an <image> or <feImage> element: a PNG, JPEG or other file that the element embeds as a data:
+ *  URI, or that `fileSystem` reads. An image that several elements share is passed once.
  *
  *  To accept the image, the callback writes its size in pixels and returns VK_TRUE. The drawing then paints with image
  *  number `index` (GpgpImagePaint::image), and the engine passes a texture of it to recordings. If the callback
@@ -237,18 +237,19 @@ typedef struct GpgpSvgSource {
   GpgpSvgReport* report;          /**< optional: written when the import succeeds */
   GpgpStageFn stageFn;            /**< optional: called for "paths", "pieces", "crossings", "patches", in this order */
   void* stageUserData;
-  /** Optional: accepts embedded images, at most GPGP_MAX_IMAGES. NULL: embedded images are reported as unsupported. */
+  /** Optional: accepts images, at most GPGP_MAX_IMAGES. NULL: images are reported as unsupported. */
   GpgpSvgImageFn imageFn;
   void* imageUserData;
   /** Largest scale at which the drawing is shown, pixels per pixel of its page; 0: 1. Up to this scale, strokes are
    *  accurate to a twentieth of a pixel and arcs to 1e-4. Non-scaling strokes have their stated width at this scale. */
   float scale;
-  /** Optional: reads external style sheets. Paths are relative to the SVG's folder. They may lead only to files in
-   *  that folder or below it, never to a host. At most 64 files of 16 MiB together are read. NULL: external style
-   *  sheets are reported as unsupported. */
+  /** Optional: reads external style sheets and images. Paths are relative to the SVG's folder. They may lead only to
+   *  files in that folder or below it, never to a host. At most 64 style sheets of 16 MiB together and images of 64 MiB
+   *  together are read. NULL: other files are reported as unsupported. */
   const GpgpFileSystem* fileSystem;
   /** Who draws the drawing; 0: GPGP_DRAWING_FLATTENED. The file holds what is asked for, and nothing else. Elements
-   * that patches do not draw are named in warnings (GpgpDrawingCreateInfo::methods). */
+   *  that patches do not draw are named in warnings (GpgpDrawingCreateInfo::methods). With GPGP_DRAWING_IN_PASS masks,
+   *  filters and blend modes are left out and named. */
   GpgpDrawingMethods methods;
   /** Optional: shapes text in the engine's fonts, for example with libgpgp_text. NULL: text is reported as
    *  unsupported. */

@@ -13,10 +13,10 @@
 // honest renderers may differ in a whole tile, as they treat lines thinner than a pixel, and edges on one another,
 // differently. A tile is wrong where it differs from librsvg's by more than kWrongTile on average, and from 256 samples
 // a pixel by winding numbers as well, and these two are nearer to each other than to ours: two renderers that share no
-// code with the passes agree on something else. In drawings with images, which the samples have not, tiles are not
-// judged. Of 130 tiles that differed from librsvg's by more than 8, in 56 drawings, those furthest from the samples
-// were 5.6 from them, where the bound is 8. --spoil turns one row of a tile in each of our pictures to its opposite
-// before they are compared, and ends with 0 where each such tile is found wrong.
+// code with the passes agree on something else. In drawings with images and layers, which the samples have not, tiles
+// are not judged. Of 130 tiles that differed from librsvg's by more than 8, in 56 drawings, those furthest from the
+// samples were 5.6 from them, where the bound is 8. --spoil turns one row of a tile in each of our pictures to its
+// opposite before they are compared, and ends with 0 where each such tile is found wrong.
 //
 // Ends with 0 where no tile is wrong and at least 99 %, or all but one, agree, 1 where not, 77 where rsvg-convert or
 // the drawings are not there.
@@ -26,6 +26,7 @@
 #include "cli/shared/textures.h"
 #include "cli/vector/images.h"
 #include "cli/vector/reference.h"
+#include "cli/vector/svg_files.h"
 #include "host/files.h"
 #include "host/picture.h"
 #include "tile_difference.h"
@@ -83,7 +84,7 @@ struct Compared {
   std::vector<WrongTile> wrong;
   bool found = false; // the tile that was spoilt
   float transform[6] = {};
-  bool images = false;
+  bool unsampled = false; // it has images or layers
   bool counts() const { return verdict == "agrees" || verdict == "differs"; }
 };
 
@@ -94,8 +95,11 @@ public:
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
     info.base = session_.recorderInfo("comparison");
     info.maxWidth = info.maxHeight = size;
-    info.maxPaths = 1 << 20;
+    info.maxPaths = 1 << 18;
     info.maxTileEntries = 1 << 18;
+    info.maxLayerPixels = 16 << 20; // as much as lavapipe binds
+    info.maxLayerOperations = 1 << 14;
+    info.maxDrawings = 1 << 10;
     canvas_ = session_.take(Canvas::create(session_.context(), info), "gpgpCreateCanvas");
     session_.check(canvas_.prewarm(), "gpgpPrewarm");
   }
@@ -114,13 +118,17 @@ public:
     source.messageUserData = &messages;
     cli::VectorImages images;
     images.attach(source);
+    const cli::SvgFiles files(file.string());
+    source.fileSystem = files.fileSystem();
     const Result<Blob> blob = compileSvg(source);
     if (!blob) return compared.verdict = "no drawing: " + messages.error, host::Picture{};
     if (!messages.unsupported.empty()) compared.verdict = "unsupported: " + messages.unsupported;
     GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
     info.data = blob->data();
     info.size = blob->size();
-    const Drawing drawing = session_.take(Drawing::create(session_.context(), info), "gpgpCreateDrawing");
+    Result<Drawing> created = Drawing::create(session_.context(), info);
+    if (!created) return compared.verdict = "it does not fit on the device", host::Picture{};
+    const Drawing drawing = std::move(*created);
     const GpgpDrawingInfo facts = session_.take(drawing.info(), "gpgpGetDrawingInfo");
     const float width = facts.viewport[2], height = facts.viewport[3];
     if (!(width > 0 && height > 0)) return compared.verdict = "empty", host::Picture{};
@@ -139,7 +147,7 @@ public:
     const auto table = vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
                                          std::pmr::get_default_resource());
     const cli::Textures textures(session_.device(), cli::shrunkToShown(images.pictures(), *table, transform));
-    compared.images = !images.pictures().empty();
+    compared.unsampled = !images.pictures().empty() || !table->plan.empty();
     const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
     const auto measured = session_.measure(
         canvas_, "drawing", 1, [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
@@ -156,7 +164,12 @@ public:
           canvas.encodeSrgb = canvas.blendSrgb = canvas.exactArea = VK_TRUE;
           return canvas_.recordPrepare(commands, frame, canvas);
         });
-    if (measured.report.pathsDropped) throw std::runtime_error(file.string() + ": paths were dropped");
+    const auto& report = measured.report;
+    if (report.layerPixels > report.layerPixelsGiven || report.layerOperations > report.layerOperationsGiven ||
+        report.items > report.itemsGiven)
+      compared.verdict = "its layers do not fit";
+    else if (report.pathsDropped)
+      throw std::runtime_error(file.string() + ": paths were dropped");
     return {w, h, host::downloadImage(session_.device(), target, VK_IMAGE_LAYOUT_GENERAL)};
   }
 
@@ -168,12 +181,17 @@ private:
 bool drawWithLibrsvg(const fs::path& file, uint32_t width, uint32_t height, host::Picture& picture) {
   static const uint32_t own = std::random_device()(); // several run side by side
   const fs::path png = fs::temp_directory_path() / ("gpgp_librsvg_" + std::to_string(own) + ".png");
-  const auto result =
-      test::runProcess({"rsvg-convert", "--width", std::to_string(width), "--height", std::to_string(height),
-                        "--background-color", "white", "--output", png.string(), file.string()});
+  const auto result = test::runProcess({"rsvg-convert", "--width", std::to_string(width), "--height",
+                                        std::to_string(height), "--output", png.string(), file.string()});
   if (result.exitCode != 0) return false;
   picture = host::readPng(png);
   fs::remove(png);
+  for (size_t i = 0; i < picture.rgba.size(); i += 4) { // over white here: librsvg would mix white with what it draws
+    const uint32_t a = picture.rgba[i + 3];
+    for (size_t c = 0; c < 4; ++c)
+      picture.rgba[i + c] = static_cast<uint8_t>((picture.rgba[i + c] * a + 255 * (255 - a) + 127) / 255);
+    picture.rgba[i + 3] = 255;
+  }
   return true;
 }
 
@@ -244,7 +262,7 @@ void judgeTiles(const host::Picture& ours, const host::Picture& theirs, Compared
       [&](const test::TileDifference& tile) {
         if (tile.mean > kWrongTile) suspects.push_back(tile);
       });
-  if (suspects.empty() || compared.images) return;
+  if (suspects.empty() || compared.unsampled) return;
   std::stable_sort(suspects.begin(), suspects.end(), [](const auto& a, const auto& b) { return a.mean > b.mean; });
   if (suspects.size() > kMostTiles) suspects.resize(kMostTiles);
   const Reference reference(compared);
@@ -329,7 +347,7 @@ void writeReport(const Options& options, const std::vector<Compared>& worst,
     const auto reference = Reference(c).part(0, 0, shown[0].width, shown[0].height);
     char numbers[160];
     std::snprintf(numbers, sizeof numbers, "%5.2f %% of pixels, mean %5.2f; ", c.large * 100, c.mean);
-    if (!c.images) // the reference knows none
+    if (!c.unsampled) // the reference knows none
       std::snprintf(numbers + std::strlen(numbers), 100, "from the reference: gpgp %5.2f, librsvg %5.2f",
                     distanceFromReference(shown[0], reference), distanceFromReference(shown[1], reference));
     page += std::string("<td>") + c.file.string() + "<br>" + numbers + "\n";
@@ -395,9 +413,9 @@ int run(const Options& options) {
         std::printf("wrong tile at %u %u: %.1f from librsvg, %.1f from samples, these %.1f apart  %s\n", tile.x, tile.y,
                     tile.fromLibrsvg, tile.fromReference, tile.betweenThem, c.file.string().c_str());
     wrong += c.wrong.size();
-    judged += c.counts() && !c.images;
+    judged += c.counts() && !c.unsampled;
     found += c.found;
-    if (options.spoil && c.counts() && !c.images && !c.found)
+    if (options.spoil && c.counts() && !c.unsampled && !c.found)
       std::printf("not found to be spoilt: %s\n", c.file.string().c_str());
     lines += line;
   }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <set>
 
 namespace {
@@ -118,6 +119,14 @@ const Property kProperties[] = {
      as("<rect x='40' y='10' width='20' height='30'/>")},
     {"transform-origin", "50px 50px", "<rect x='10' y='40' width='30' height='20' transform='rotate(90)' ", "/>",
      as("<rect x='40' y='10' width='20' height='30'/>")},
+    {"transform-box", "fill-box", "<rect x='20' y='20' width='20' height='20' transform='scale(2)' ", "/>",
+     as("<rect x='20' y='20' width='40' height='40'/>"), false},
+    {"transform-box", "stroke-box", kRect, "/>", named("transform-box 'stroke-box'"), false},
+    {"translate", "5px 10%", "<rect width='20' height='20' ", "/>", as("<rect x='5' y='10' width='20' height='20'/>"),
+     false},
+    {"rotate", "90deg", "<rect x='10' y='40' width='30' height='20' transform-origin='50 50' ", "/>",
+     as("<rect x='40' y='10' width='20' height='30'/>"), false},
+    {"scale", "2 1", "<rect width='20' height='20' ", "/>", as("<rect width='40' height='20'/>"), false},
     {"font-size", "5px", "<rect width='4em' height='4em' ", "/>", as("<rect width='20' height='20'/>")},
     {"font", "5px serif", "<rect width='4em' height='4em' ", "/>", as("<rect width='20' height='20'/>"), false},
     {"x", "30px", "<rect y='20' width='20' height='20' ", "/>", as("<rect x='30' y='20' width='20' height='20'/>")},
@@ -137,18 +146,14 @@ const Property kProperties[] = {
     {"marker-end", "url(#m)", kMarked, "/>", as("<path d='M70 70H90V90H70Z' fill='#a00'/>")},
     // Named.
     {"clip", "rect(0 1px 1px 0)", "<svg width='50' height='50' ", "/>", named("clip is not supported")},
-    {"filter", "url(#f)", kRect, "/>", named("filter is not supported")},
-    {"filter", "blur(3px)", kRect, "/>", named("filter is not supported")},
-    {"mask", "url(#m)", kRect, "/>", named("mask is not supported")},
+    {"filter", "url(#f)", kRect, "/>", named("filter '#f' is not there")},
+    {"filter", "url(a.svg#f)", kRect, "/>", named("filter 'a.svg#f' of another file is not supported")},
+    {"mask", "url(#m)", kRect, "/>", named("mask 'url(#m)' is not there")},
+    {"mask", "url(a.png)", kRect, "/>", named("mask 'url(a.png)' is not supported")},
     {"mask-image", "url(#m)", kRect, "/>", named("mask-image is not supported"), false},
     {"mask-border", "url(a.png) 30", kRect, "/>", named("mask-border is not supported"), false},
-    {"mix-blend-mode", "multiply", kRect, "/>", named("mix-blend-mode is not supported"), false},
     {"shape-rendering", "crispEdges", kRect, "/>", named("shape-rendering is not supported")},
     {"image-rendering", "pixelated", "<g ", "/>", named("image-rendering is not supported")},
-    {"transform-box", "fill-box", kRect, "/>", named("transform-box is not supported"), false},
-    {"translate", "5px", kRect, "/>", named("translate is not supported"), false},
-    {"rotate", "5deg", kRect, "/>", named("rotate is not supported"), false},
-    {"scale", "2", kRect, "/>", named("scale is not supported"), false},
     {"perspective", "9px", kRect, "/>", named("perspective is not supported"), false},
     {"offset-path", "path('M0 0H9')", kRect, "/>", named("offset-path is not supported"), false},
     {"offset", "path('M0 0H9') 50%", kRect, "/>", named("offset is not supported"), false},
@@ -202,7 +207,7 @@ const Property kProperties[] = {
     {"white-space", "pre", kRect, "/>", kNothing},
     {"word-spacing", "2", kRect, "/>", kNothing},
     {"writing-mode", "tb", kRect, "/>", kNothing},
-    // For filters, masks and blending, which are named.
+    // For filters, masks and blending, which svg_layers_test looks at.
     {"color-interpolation-filters", "linearRGB", kRect, "/>", kNothing},
     {"enable-background", "new", kRect, "/>", kNothing},
     {"flood-color", "red", kRect, "/>", kNothing},
@@ -336,8 +341,8 @@ const Element kElements[] = {
     {"mesh", "<mesh/>", named("<mesh> is not supported")},
     {"meshpatch", "<meshpatch/>", named("<meshpatch> is not supported")},
     {"meshrow", "<meshrow/>", named("<meshrow> is not supported")},
-    {"mask", "<mask id='m'/><rect width='9' height='9' mask='url(#m)'/>", named("mask is not supported")},
-    {"filter", "<filter id='m'/><path d='M0 0h9v9' filter='url(#m)'/>", named("filter is not supported")},
+    {"mask", "<mask id='m'/><rect width='9' height='9' mask='url(#m)'/>", as(kEmpty)},
+    {"filter", "<filter id='m'/><path d='M0 0h9v9' filter='url(#m)'/>", as(kEmpty)},
     {"animate", "<defs><animate href='#r'/></defs>", named("<animate> is not supported")},
     {"animateColor", "<rect width='9' height='9'><animateColor/></rect>", named("<animateColor> is not supported")},
     {"animateMotion", "<animateMotion><mpath/></animateMotion>", named("<animateMotion> is not supported")},
@@ -378,17 +383,21 @@ const Element kElements[] = {
 
 TEST(SvgCoverage, EachElementIsDrawnOrNamedOrShowsNothing) {
   for (const Element& e : kElements) expectOutcome(e.name, page(e.text), e.outcome, page(""));
-  // All primitives of filters: what has the filter is named, once.
+  // All primitives of filters are steps.
   for (const char* primitive :
-       {"feBlend", "feColorMatrix", "feComponentTransfer", "feComposite", "feConvolveMatrix", "feDiffuseLighting",
-        "feDisplacementMap", "feDropShadow", "feFlood", "feGaussianBlur", "feImage", "feMerge", "feMorphology",
-        "feOffset", "feSpecularLighting", "feTile", "feTurbulence"})
-    expectOutcome(primitive,
-                  page(std::string("<filter id='f'><") + primitive +
-                       "><feMergeNode/><feFuncR/><feFuncG/><feFuncB/><feFuncA/><feDistantLight/><fePointLight/>"
-                       "<feSpotLight/></" +
-                       primitive + "></filter><rect width='9' height='9' filter='url(#f)'/>"),
-                  named("filter is not supported: <rect>"), page(""));
+       {"feBlend", "feColorMatrix", "feComponentTransfer", "feComposite",
+        "feConvolveMatrix kernelMatrix='0 0 0 0 1 0 0 0 0'", "feDiffuseLighting", "feDisplacementMap", "feDropShadow",
+        "feFlood", "feGaussianBlur", "feImage href='#r'", "feMerge", "feMorphology", "feOffset", "feSpecularLighting",
+        "feTile", "feTurbulence"}) {
+    const Import i = page(std::string("<defs><path id='r' d='M0 0h9v9'/></defs><filter id='f'><") + primitive +
+                          "><feMergeNode/><feFuncR/><feFuncG/><feFuncB/><feFuncA/><feDistantLight/><fePointLight/>"
+                          "<feSpotLight/></" +
+                          std::string(primitive, std::strcspn(primitive, " ")) +
+                          "></filter><rect width='9' height='9' filter='url(#f)'/>");
+    EXPECT_EQ(i.placed, Texts()) << primitive;
+    ASSERT_TRUE(!i.drawing.groups.empty() && i.drawing.groups[0].layer) << primitive;
+    EXPECT_EQ(i.drawing.groups[0].layer->steps.size(), 1u) << primitive;
+  }
 }
 
 TEST(SvgCoverage, TheOutermostElementHasABox) {

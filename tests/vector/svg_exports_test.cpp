@@ -47,10 +47,9 @@ const Export kExports[] = {
 <g clip-path="url(#clip0_1_2)"><rect x="20" y="20" width="90" height="60" fill="black" fill-opacity="0.5"/>
 <g filter="url(#filter0_d)"><path d="M0 0H10V10H0Z" fill="#FF0000"/></g>
 <g style="mix-blend-mode:multiply"><path d="M90 0H100V10H90Z" fill="#FF0000"/></g></g>
-<defs><filter id="filter0_d" color-interpolation-filters="sRGB"><feFlood flood-opacity="0"/></filter><clipPath id="clip0_1_2"><rect width="100" height="100" fill="white"/></clipPath></defs></svg>)svg",
+<defs><filter id="filter0_d" color-interpolation-filters="sRGB"><feFlood flood-opacity="0" result="BackgroundImageFix"/><feBlend mode="normal" in="SourceGraphic" in2="BackgroundImageFix" result="shape"/></filter><clipPath id="clip0_1_2"><rect width="100" height="100" fill="white"/></clipPath></defs></svg>)svg",
      "<path d='M20 20H100V80H20Z' fill-opacity='.5'/><path d='M0 0H10V10H0ZM90 0H100V10H90Z' fill='red'/>",
-     {"test.svg:3:1: warning: filter is not supported: <g> is drawn without it",
-      "test.svg:4:1: warning: mix-blend-mode is not supported: <g> is drawn without it"}},
+     {}},
     {"matplotlib",
      R"svg(<?xml version="1.0" encoding="utf-8" standalone="no"?>
 <!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://www.w3.org/Graphics/SVG/1.1/DTD/svg11.dtd">

@@ -46,7 +46,7 @@ struct Import {
 };
 
 inline Import import(std::string_view text, const vector::svg::ImportLimits& limits = {}, double scale = 1,
-                     const GpgpFileSystem* files = nullptr) {
+                     const GpgpFileSystem* files = nullptr, bool layers = true) {
   Import result;
   const auto listen = [](void* user, const GpgpMessage* m) {
     auto& into = *static_cast<Import*>(user);
@@ -55,8 +55,10 @@ inline Import import(std::string_view text, const vector::svg::ImportLimits& lim
     into.messages.push_back((m->severity == GPGP_SEVERITY_ERROR ? "E " : "W ") + withLine(whole));
   };
   vector::svg::Reporter reporter(listen, &result, "test.svg");
+  vector::svg::ImportDetail detail;
+  detail.scale = scale, detail.layers = layers;
   auto drawing =
-      vector::svg::importSvg(std::as_bytes(std::span(text.data(), text.size())), reporter, limits, {}, {scale}, files);
+      vector::svg::importSvg(std::as_bytes(std::span(text.data(), text.size())), reporter, limits, {}, detail, files);
   if (drawing)
     result.drawing = std::move(*drawing);
   else

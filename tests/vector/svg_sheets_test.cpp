@@ -241,4 +241,49 @@ TEST(SvgSheets, TheyAreBounded) {
   EXPECT_EQ(sheeted("", "<style>" + deep + "</style>", files).placed.size(), 1u);
 }
 
+TEST(SvgSheets, ImagesLieBesideTheDrawingAsWell) {
+  const TextFiles files{{"a.png", "A"}, {"below/b c.png", "B"}, {"empty.png", ""}};
+  const GpgpFileSystem system = files.fileSystem();
+  struct Seen {
+    std::string bytes;
+    Texts messages;
+  };
+  const auto drawn = [&](const std::string& href, bool hasFiles = true) {
+    Seen seen;
+    vector::svg::Reporter reporter(
+        [](void* user, const GpgpMessage* m) { static_cast<Seen*>(user)->messages.push_back(withLine(placed(*m))); },
+        &seen, "test.svg");
+    const auto decode = [](void* user, uint32_t, const void* data, size_t size, uint32_t* width,
+                           uint32_t* height) -> VkBool32 {
+      static_cast<Seen*>(user)->bytes.append(static_cast<const char*>(data), size);
+      return *width = *height = 4, VK_TRUE;
+    };
+    const std::string text = "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><image href='" + href +
+                             "' width='9' height='9'/><image href='" + href + "' width='4' height='4'/></svg>";
+    const auto drawing = vector::svg::importSvg(std::as_bytes(std::span(text)), reporter, {}, {decode, &seen}, {},
+                                                hasFiles ? &system : nullptr);
+    EXPECT_EQ(drawing->paths.size(), seen.messages.empty() ? 2u : 0u) << href;
+    return seen;
+  };
+  EXPECT_EQ(drawn("a.png").bytes, "A"); // once
+  EXPECT_EQ(drawn("./below/../below/b%20c.png?x#y").bytes, "B");
+  const std::pair<const char*, const char*> refused[] = {
+      {"../a.png", "leads out of the drawing's folder, where nothing is read"},
+      {"below/../../a.png", "leads out of the drawing's folder, where nothing is read"},
+      {"/a.png", "has an absolute path, and only paths from the drawing's folder are read"},
+      {"http://host/a.png", "is not beside the drawing, and other places are not read"},
+      {"//host/a.png", "is not beside the drawing, and other places are not read"},
+      {"C:a.png", "is not beside the drawing, and other places are not read"},
+      {"no.png", "cannot be read"}};
+  for (const auto& [href, why] : refused) {
+    const Seen seen = drawn(href);
+    EXPECT_EQ(seen.bytes, "") << href;
+    ASSERT_FALSE(seen.messages.empty()) << href;
+    EXPECT_EQ(seen.messages[0], "line 1: <image> '" + std::string(href) + "' " + why + "; it is not drawn");
+  }
+  EXPECT_EQ(drawn("a.png", false).messages[0],
+            "line 1: <image> 'a.png' is another file, and no files are read here; it is not drawn");
+  EXPECT_EQ(drawn("empty.png").messages[0], "line 1: <image> holds nothing that can be decoded; not supported");
+}
+
 } // namespace

@@ -87,13 +87,15 @@ private:
       j.shared[inner] = true;
       j.corner[inner] = p + offset(inner) * scale * bisector;
     }
-    const bool miter = !j.smooth && style_.join == Join::Miter && 1 / cosHalf <= style_.miterLimit;
+    const bool miter = !j.smooth && hasMiters() && 1 / cosHalf <= style_.miterLimit;
     if (miter || h_ * (1 / cosHalf - 1) < 0.2 * tolerance_) {
       j.shared[1 - inner] = true;
       j.corner[1 - inner] = p + offset(1 - inner) * scale * bisector;
     }
     return j;
   }
+
+  bool hasMiters() const { return style_.join == Join::Miter || style_.join == Join::MiterClip; }
 
   void side(std::span<const Segment> segments, bool closed, int side) {
     const size_t n = segments.size();
@@ -127,11 +129,18 @@ private:
       return;
     }
     const double cosHalf = std::sqrt(std::max(0.0, 1 + j.cosine) / 2);
-    if (style_.join == Join::Miter && cosHalf > 1e-6 && 1 / cosHalf <= style_.miterLimit) {
+    if (hasMiters() && cosHalf > 1e-6 && 1 / cosHalf <= style_.miterLimit) {
       const Point bisector = left(j.from + j.to);
       const Point tip = p + s / (cosHalf * length(bisector)) * bisector;
       line(start, tip);
       line(tip, end);
+    } else if (style_.join == Join::MiterClip && style_.miterLimit > cosHalf) { // across, at the limit (SVG 2, 13.5.5)
+      const double sinHalf = std::sqrt(std::max(0.0, 1 - j.cosine) / 2);
+      const double reach = h_ * (style_.miterLimit - cosHalf) / sinHalf;
+      const Point first = start + reach * j.from, last = end - reach * j.to;
+      line(start, first);
+      line(first, last);
+      line(last, end);
     } else {
       line(start, end);
     }

@@ -7,7 +7,7 @@
 namespace gpgp::vector {
 
 enum class Cap { Butt, Round, Square };
-enum class Join { Miter, Round, Bevel };
+enum class Join { Miter, Round, Bevel, MiterClip }; ///< the last: longer miters are cut at the limit
 
 struct StrokeStyle {
   double width = 1;

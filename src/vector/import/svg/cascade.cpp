@@ -52,7 +52,7 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
         (isUnsupported(s.name, s.value) || (isRoot && isUnsupportedOnRoot(s.name, s.value))))
       reporter_.warn(document_.place(node),
                      std::string(s.name) + " is not supported: " + element(node) + " is drawn without it");
-    if (s.name == "stroke-linejoin" && (isWord(trim(s.value), "miter-clip") || isWord(trim(s.value), "arcs")))
+    if (s.name == "stroke-linejoin" && isWord(trim(s.value), "arcs"))
       reporter_.warn(document_.place(node), "stroke-linejoin '" + std::string(trim(s.value)) +
                                                 "' is not supported: " + element(node) + " has miters instead");
     if (applied == Applied::Invalid) ignored(node, document_.place(node), s.name, s.value);
@@ -85,28 +85,57 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
     if (!setsSize(s)) apply(s);
 }
 
-Affine Importer::transformOf(pugi::xml_node node, const Style& style, const LengthContext& outer) {
+Affine Importer::transformOf(pugi::xml_node node, const Style& style, const LengthContext& outer,
+                             const std::function<Box()>& box) {
   Affine own;
-  if (style.transform.empty()) return own;
+  if (!style.isMoved()) return own;
   const char* name = transformAttribute(document_.name(node));
   const pugi::xml_attribute text = node.attribute(name);
   const Place place = text && text.value() == style.transform ? document_.place(text, 0) : document_.place(node);
   LengthContext lengths = outer;
   lengths.fontSize = style.fontSize;
-  if (!parseTransform(style.transform, lengths, own)) {
+  Point corner;
+  if (style.byOwnBox && box) {
+    const Box b = box();
+    const bool isThere = b.right >= b.left && b.bottom >= b.top;
+    lengths.width = isThere ? b.right - b.left : 0, lengths.height = isThere ? b.bottom - b.top : 0;
+    if (isThere) corner = {b.left, b.top};
+  }
+  // The properties of CSS Transforms 2, in their order, are functions of these names.
+  const struct {
+    const char* name;
+    const std::string& value;
+  } singles[] = {{"translate", style.translate}, {"rotate", style.rotate}, {"scale", style.scale}};
+  for (const auto& single : singles) {
+    if (single.value.empty()) continue;
+    Affine one;
+    std::string values;
+    for (std::string_view rest = single.value; !(rest = trim(rest)).empty();) {
+      const size_t end = rest.find('(') == rest.npos ? rest.find_first_of(" \t\r\n\f") : rest.npos;
+      values.append(values.empty() ? "" : ",").append(rest.substr(0, end));
+      rest = end == rest.npos ? std::string_view() : rest.substr(end);
+    }
+    if (!parseTransform(std::string(single.name) + "(" + values + ")", lengths, one))
+      ignored(node, document_.place(node), single.name, single.value);
+    own = own * one;
+  }
+  Affine listed;
+  if (!style.transform.empty() && !parseTransform(style.transform, lengths, listed)) {
     if (hasUnsupported(style.transform))
       ignored(node, place, "transform", style.transform);
     else
       reporter_.error(place,
                       element(node) + " has an error in its " + (text ? name : "transform") + ", which is ignored");
-    return {};
+    listed = {};
   }
-  if (style.transformOrigin.empty()) return own;
+  own = own * listed;
   Point origin;
-  if (!parseOrigin(style.transformOrigin, lengths, origin)) {
+  if (!style.transformOrigin.empty() && !parseOrigin(style.transformOrigin, lengths, origin)) {
     ignored(node, place, "transform-origin", style.transformOrigin);
-    return own;
+    origin = {};
+    if (!style.byOwnBox) return own;
   }
+  origin = origin + corner;
   return Affine{1, 0, 0, 1, origin.x, origin.y} * own * Affine{1, 0, 0, 1, -origin.x, -origin.y};
 }
 

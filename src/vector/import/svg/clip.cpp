@@ -1,4 +1,5 @@
-// What clip-path refers to: the shapes of a clipPath as the clip of a group (CSS Masking 1, chapter 6).
+// What clip-path refers to (CSS Masking 1, chapter 5): the shapes of a clipPath as the clip of a group, or as its mask
+// where they have clips themselves.
 #include "vector/import/svg/importer.h"
 
 #include <algorithm>
@@ -32,9 +33,10 @@ void Importer::measure(const Shape& shape, const Affine& transform) {
 Box Importer::boxAround(pugi::xml_node node, std::string_view name, State state, const Affine& space) {
   box_ = {};
   toBox_ = inverseOf(space);
+  const Mode outer = mode_;
   mode_ = Mode::Measure;
   content(node, name, state);
-  mode_ = Mode::Paint;
+  mode_ = outer;
   return box_;
 }
 
@@ -53,18 +55,8 @@ Style Importer::styleOf(pugi::xml_node node, const LengthContext& lengths) {
   return style;
 }
 
-void Importer::clip(pugi::xml_node node, std::string_view name, State& state) {
-  Affine space = state.transform;
-  if (name == "use") { // its x and y move its own coordinates
-    LengthContext lengths = state.lengths;
-    lengths.fontSize = state.style.fontSize;
-    space = space * Affine{1,
-                           0,
-                           0,
-                           1,
-                           length(node, state.style, "x", lengths, LengthAxis::X, 0),
-                           length(node, state.style, "y", lengths, LengthAxis::Y, 0)};
-  }
+void Importer::clip(pugi::xml_node node, std::string_view name, State& state, const Frame* of) {
+  const Affine space = of ? of->space : spaceOf(node, name, state);
   std::optional<Box> box; // of the element, when first asked for
   std::vector<pugi::xml_node> targets;
   pugi::xml_node from = node;
@@ -79,8 +71,12 @@ void Importer::clip(pugi::xml_node node, std::string_view name, State& state) {
     const std::string reference = referenceOf(value);
     const pugi::xml_node target = reference.empty() ? pugi::xml_node() : document_.find(reference);
     if (!target || document_.name(target) != "clipPath") return without(shown + " is no clipPath of this file");
-    if (std::find(targets.begin(), targets.end(), target) != targets.end()) return without(shown + " contains itself");
-    if (state.clips >= shader::kMaxClipDepth) return without("is inside too many others");
+    if (std::find(targets.begin(), targets.end(), target) != targets.end() ||
+        std::find(used_.begin(), used_.end(), target) != used_.end())
+      return without(shown + " contains itself");
+    if (state.clips >= shader::kMaxClipDepth || state.clips + state.fading + state.layers >= GPGP_MAX_LAYER_DEPTH ||
+        layerCount_ >= limits_.layers)
+      return without("is inside too many others");
     targets.push_back(target);
     State inner;
     inner.style = styleOf(target, state.lengths);
@@ -93,29 +89,61 @@ void Importer::clip(pugi::xml_node node, std::string_view name, State& state) {
     inner.lengths = state.lengths;
     inner.depth = state.depth;
     if (isByBox) {
-      if (!box) box = boxAround(node, name, state, space);
+      if (!box) box = of ? of->box() : boxOfElement(node, name, state, space);
       if (box->left <= box->right)
         inner.transform =
             inner.transform * Affine{box->right - box->left, 0, 0, box->bottom - box->top, box->left, box->top};
     }
     if (!inner.transform.finite()) return without(shown + " has a transform beyond all numbers");
-    ++state.clips;
-    MadeClip& made = madeClips_[target.hash_value()];
-    const MadeClip wanted{inner.transform, state.lengths.width, state.lengths.height, state.group, made.group};
-    if (made.group && made == wanted) { // neighbours often share one
+    const MadeClip made = madeClips_[target.hash_value()];
+    MadeClip wanted{inner.transform, state.lengths.width, state.lengths.height, state.group, made.group};
+    if (sharesClips_ && made.group && made == wanted) { // neighbours often share one
+      ++state.clips;
       state.group = made.group;
       continue;
     }
     std::vector<ImportedPath> paths;
     std::swap(paths, result_.paths);
+    const Mode outer = mode_;
+    const bool inside = clipsInside_, apart = clipsApart_;
     mode_ = Mode::Clip;
+    clipsInside_ = clipsApart_ = false;
     visitChildren(target, inner);
-    mode_ = Mode::Paint;
+    const bool isMask = clipsInside_ && detail_.layers;
+    if (clipsInside_ && !isMask)
+      reporter_.warn(document_.place(target), "clip-path inside a clipPath is not drawn inside a render pass: " +
+                                                  element(target) + " is drawn without it");
     std::swap(paths, result_.paths);
-    result_.groups.push_back({state.group, 1, true, std::move(paths)});
-    state.group = static_cast<uint32_t>(result_.groups.size());
-    made = wanted;
-    made.group = state.group;
+    if (isMask) { // shapes that have clips themselves: they cover what is shown
+      const auto layer = std::make_shared<ImportedLayer>();
+      layer->layer.maskKind = GPGP_MASK_ALPHA;
+      layer->layer.maskEncoding = GPGP_IMAGE_SRGB;
+      const float all[4] = {-1e7f, -1e7f, 1e7f, 1e7f}, same[6] = {1, 0, 0, 1, 0, 0};
+      std::copy_n(all, 4, layer->layer.maskRegion);
+      std::copy_n(same, 6, layer->layer.maskTransform);
+      result_.groups.push_back({state.group, 1, false, {}});
+      state.group = static_cast<uint32_t>(result_.groups.size());
+      ++state.layers;
+      ++layerCount_;
+      clipsApart_ = true;
+      used_.push_back(target);
+      State apartFrom = inner;
+      apartFrom.clips = state.clips, apartFrom.fading = state.fading, apartFrom.layers = state.layers;
+      layer->layer.mask = aside(std::move(apartFrom), [&](State& own) { visitChildren(target, own); });
+      used_.pop_back();
+      if (layer->layer.mask)
+        result_.groups[state.group - 1].layer = layer;
+      else
+        result_.groups[state.group - 1].clipped = true; // nothing is shown
+    } else {
+      ++state.clips;
+      result_.groups.push_back({state.group, 1, true, std::move(paths)});
+      state.group = static_cast<uint32_t>(result_.groups.size());
+      wanted.group = state.group;
+      madeClips_[target.hash_value()] = wanted;
+    }
+    mode_ = outer;
+    clipsInside_ = inside, clipsApart_ = apart;
   }
 }
 

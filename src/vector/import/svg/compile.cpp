@@ -25,11 +25,13 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
   const auto milliseconds = [](Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double, std::milli>(to - from).count();
   };
+  vector::svg::ImportDetail detail;
+  if (source.scale > 0) detail.scale = static_cast<double>(source.scale);
+  detail.layers = !(source.methods & GPGP_DRAWING_IN_PASS); // patches have none
   const auto begin = Clock::now();
   const auto imported = vector::svg::importSvg(
       {static_cast<const std::byte*>(source.data), source.data ? source.size : 0}, reporter, {},
-      {source.imageFn, source.imageUserData}, {source.scale > 0 ? static_cast<double>(source.scale) : 1},
-      source.fileSystem, {source.textFn, source.textUserData});
+      {source.imageFn, source.imageUserData}, detail, source.fileSystem, {source.textFn, source.textUserData});
   if (!imported) return fail(imported.error().code, imported.error().text);
   std::pmr::memory_resource* memory = std::pmr::new_delete_resource();
   const vector::svg::ImportedViews views(*imported);

@@ -181,6 +181,8 @@ core::Result<void> Document::load(std::span<const std::byte> bytes) {
   toUtf8(text_);
   if (auto ok = expandEntities(text_, kMaxBytes); !ok) return ok;
   size_t tags = 0, attributes = 0;
+  mayBlend_ = text_.find("-blend-") != text_.npos;
+  mayLayer_ = mayBlend_ || text_.find("filter") != text_.npos || text_.find("mask") != text_.npos;
   for (size_t i = 0; i < text_.size(); ++i) {
     tags += text_[i] == '<';
     attributes += text_[i] == '=';

@@ -54,6 +54,9 @@ public:
   const std::vector<Html>& html() const { return html_; }
   /// <?xml-stylesheet ...?> before the outermost element.
   std::vector<pugi::xml_node> styleInstructions() const;
+  /// Whether the file speaks of modes of mixing, and of those, masks and filters.
+  bool mayBlend() const { return mayBlend_; }
+  bool mayLayer() const { return mayLayer_; }
   /// References to entities that the file does not define.
   struct Unknown {
     std::string text; ///< "&name;"
@@ -67,6 +70,7 @@ private:
   void resolveNamespaces();
   void findUnknownEntities();
 
+  bool mayBlend_ = false, mayLayer_ = false;
   std::string text_; // the tree points into it
   pugi::xml_document tree_;
   pugi::xml_node root_;

@@ -53,9 +53,9 @@ const Importer::GradientChain& Importer::chainOf(pugi::xml_node gradient) {
     if (!href.empty() && href[0] != '#') return chain.otherFile = href, chain;
     const pugi::xml_node next = document_.find(href);
     if (!next) return noTemplate("not there"), chain;
-    const bool isPattern = document_.name(gradient) == "pattern";
-    if (isPattern ? document_.name(next) != "pattern" : !oneOf(document_.name(next), kGradients))
-      return noTemplate((isPattern ? "no pattern but a " : "no gradient but a ") + element(next)), chain;
+    const std::string_view name = document_.name(gradient), kind = oneOf(name, kGradients) ? "gradient" : name;
+    if (kind == "gradient" ? !oneOf(document_.name(next), kGradients) : document_.name(next) != name)
+      return noTemplate("no " + std::string(kind) + " but a " + element(next)), chain;
     chain.cyclic = std::find(chain.gradients.begin(), chain.gradients.end(), next) != chain.gradients.end();
     if (chain.cyclic) return chain;
     if (chain.gradients.size() == kLongest) return noTemplate("one more than 32 after each other"), chain;
@@ -171,7 +171,7 @@ std::shared_ptr<const Gradient> Importer::gradientOf(const GradientChain& chain,
   }
   for (const pugi::xml_node gradient : chain.gradients) { // the property, whose attribute gradientTransform is
     const Style style = styleOf(gradient, state.lengths);
-    if (style.transform.empty()) continue;
+    if (!style.isMoved()) continue;
     const Affine own = transformOf(gradient, style, lengths); // its box is what its units measure by
     if (own.a * own.d == own.b * own.c) return nullptr;       // it has no extent
     map = map * own;

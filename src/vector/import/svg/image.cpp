@@ -1,5 +1,5 @@
-// <image> with a data: URI as a rectangle painted with the image (SVG 2, 12.4). Whoever compiles decodes PNG, JPEG and
-// the like, and keeps the texture; here base64 becomes bytes and the picture is fitted into its place.
+// <image> as a rectangle painted with the image (SVG 2, 12.4), which is embedded or lies beside the drawing. Whoever
+// compiles decodes PNG, JPEG and the like, and keeps the texture; here the picture is fitted into its place.
 #include "vector/import/svg/data_uri.h"
 #include "vector/import/svg/importer.h"
 
@@ -36,7 +36,17 @@ const Importer::Picture* Importer::pictureOf(pugi::xml_node node) {
   if (!isNew) return picture.width ? &picture : nullptr;
   picture.index = pictureCount_;
   if (pictureCount_ < GPGP_MAX_IMAGES) {
-    const std::vector<uint8_t> bytes = decodeDataUri(href);
+    std::vector<uint8_t> bytes;
+    if (isWord(href.substr(0, 5), "data:")) {
+      bytes = decodeDataUri(href);
+    } else {
+      std::string path, read;
+      const size_t left = limits_.imageBytes - std::min(imageBytes_, limits_.imageBytes);
+      const Read result = readBeside(href, {}, left, path, read);
+      picture.why = result.isTooLarge ? "makes more bytes of images than are read" : result.why;
+      imageBytes_ += read.size();
+      bytes.assign(read.begin(), read.end());
+    }
     uint32_t width = 0, height = 0;
     if (!bytes.empty() && images_.fn(images_.userData, picture.index, bytes.data(), bytes.size(), &width, &height) &&
         width && height) {
@@ -51,35 +61,41 @@ const Importer::Picture* Importer::pictureOf(pugi::xml_node node) {
 }
 
 void Importer::drawImage(pugi::xml_node node, const State& state) {
+  LengthContext lengths = state.lengths;
+  lengths.fontSize = state.style.fontSize;
+  bool hasWidth = false, hasHeight = false;
+  const double w = extent(node, state.style, "width", lengths, LengthAxis::X, 0, &hasWidth);
+  const double h = extent(node, state.style, "height", lengths, LengthAxis::Y, 0, &hasHeight);
+  const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
+               y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
+  constexpr double unset = -1;
+  drawPicture(node, state, {x, y, hasWidth ? w : unset, hasHeight ? h : unset});
+}
+
+void Importer::drawPicture(pugi::xml_node node, const State& state, const ViewBox& box) {
   const std::string_view href = trim(hrefOf(node).value());
   const Place place = document_.place(node);
-  if (!images_.fn) return reporter_.warn(place, "<image> is not supported");
-  if (href.substr(0, 5) != "data:")
-    return reporter_.warn(place,
-                          "<image> of another file, '" + std::string(href.substr(0, 60)) + "', is not supported");
+  if (!images_.fn) return reporter_.warn(place, element(node) + " is not supported");
   const Picture* picture = pictureOf(node);
   if (!picture) {
     const Picture& refused = pictures_.find(href)->second;
+    if (refused.why)
+      return reporter_.warn(place, element(node) + " '" + std::string(href.substr(0, 60)) + "' " + refused.why +
+                                       "; it is not drawn");
     const std::string why = refused.index >= GPGP_MAX_IMAGES
                                 ? "is one more than the " + std::to_string(GPGP_MAX_IMAGES) + " that a drawing can have"
                             : refused.format ? std::string("holds ") + refused.format + " that cannot be decoded"
                                              : "holds nothing that can be decoded";
-    return reporter_.warn(place, "<image> " + why + "; not supported");
+    return reporter_.warn(place, element(node) + " " + why + "; not supported");
   }
-  LengthContext lengths = state.lengths;
-  lengths.fontSize = state.style.fontSize;
-  bool hasWidth = false, hasHeight = false;
-  double w = extent(node, state.style, "width", lengths, LengthAxis::X, 0, &hasWidth);
-  double h = extent(node, state.style, "height", lengths, LengthAxis::Y, 0, &hasHeight);
-  const double pw = picture->width, ph = picture->height;
-  if (!hasWidth) w = hasHeight ? h * pw / ph : pw;
-  if (!hasHeight) h = w * ph / pw;
+  const double pw = picture->width, ph = picture->height, x = box.x, y = box.y;
+  double w = box.width, h = box.height;
+  if (w < 0) w = h >= 0 ? h * pw / ph : pw;
+  if (h < 0) h = w * ph / pw;
   if (!(w > 0 && h > 0)) return;
-  const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
-               y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
   const Affine fitted = Affine{1, 0, 0, 1, x, y} * fitViewBox({0, 0, pw, ph}, w, h, aspectRatio(node));
   if (state.style.overflowVisible && aspectRatio(node).slice)
-    reporter_.warn(place, "overflow 'visible' is not supported: <image> is drawn without it");
+    reporter_.warn(place, "overflow 'visible' is not supported: " + element(node) + " is drawn without it");
   // What of the picture is within its place.
   const double left = std::max(x, fitted.e), top = std::max(y, fitted.f);
   const double right = std::min(x + w, fitted.e + pw * fitted.a), bottom = std::min(y + h, fitted.f + ph * fitted.d);

@@ -87,6 +87,8 @@ core::Result<Imported> Importer::run() {
     return core::makeError(GPGP_ERROR_INVALID_DATA, "%zu:%zu: <svg> is wider or taller than 10000000 pixels",
                            place.line, place.column);
   if (!empty_) visit(document_.root(), state);
+  result_.paths.insert(result_.paths.end(), std::make_move_iterator(aside_.begin()),
+                       std::make_move_iterator(aside_.end()));
   return std::move(result_);
 }
 
@@ -113,7 +115,9 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
   std::optional<State> entered = enter(node, parent);
   if (!entered) return;
   State& state = *entered;
-  state.transform = state.transform * transformOf(node, state.style, parent.lengths);
+  const Affine around = state.transform;
+  state.transform =
+      around * transformOf(node, state.style, parent.lengths, [&] { return boxAround(node, name, state, around); });
   if (!state.transform.finite()) {
     reporter_.error(document_.place(node), element(node) + " has a transform beyond all numbers; not drawn");
     return;
@@ -122,42 +126,12 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
     reporter_.ignored(document_.place(node), element(node) + " shows nothing inside a <clipPath>");
     return;
   }
+  if (mode_ == Mode::Clip && !state.style.clipPath.empty()) {
+    clipsInside_ = true;
+    if (clipsApart_) clip(node, name, state, nullptr);
+  }
   if (mode_ != Mode::Paint) return content(node, name, state, useSize);
   grouped(node, name, state, [&](State& own) { content(node, name, own, useSize); });
-}
-
-void Importer::grouped(pugi::xml_node node, std::string_view name, State& state,
-                       const std::function<void(State&)>& inside) {
-  const double opacity = state.style.opacity;
-  if (!(opacity > 0)) return;
-  const size_t before = result_.paths.size(), groupsBefore = result_.groups.size();
-  if (!state.style.clipPath.empty()) clip(node, name, state);
-  const bool fades = opacity < 1 && state.fading < shader::kMaxLayerDepth;
-  uint32_t faded = 0;
-  if (fades) {
-    result_.groups.push_back({state.group, static_cast<float>(opacity), false, {}});
-    state.group = faded = static_cast<uint32_t>(result_.groups.size());
-    ++state.fading;
-  } else {
-    state.opacity *= opacity;
-  }
-  inside(state);
-  const size_t drawn = result_.paths.size() - before;
-  if (drawn == 0) {
-    if (result_.groups.size() > groupsBefore) madeClips_.clear();
-    result_.groups.resize(groupsBefore);
-  } else if (fades && drawn == 1) { // one path needs no group to fade
-    ImportedPath& path = result_.paths.back();
-    path.color[3] = static_cast<float>(static_cast<double>(path.color[3]) * opacity);
-    result_.groups[faded - 1].opacity = 1;
-    if (path.group == faded) {
-      path.group = result_.groups[faded - 1].parent;
-      result_.groups.resize(faded - 1);
-    }
-  } else if (opacity < 1 && !fades && drawn > 1) {
-    reporter_.warn(document_.place(node),
-                   "opacity of " + element(node) + ", inside too many that fade, is applied to each of its paths");
-  }
 }
 
 void Importer::content(pugi::xml_node node, std::string_view name, State& state, const double* useSize) {
@@ -246,10 +220,6 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
     if (mode_ == Mode::Paint) paintBackground(state);
     return visitChildren(node, state);
   }
-  for (const char* name : {"refX", "refY"})
-    if (node.attribute(name))
-      reporter_.warn(document_.place(node),
-                     std::string(name) + " is not supported: " + element(node) + " is drawn without it");
   LengthContext lengths = state.lengths;
   lengths.fontSize = state.style.fontSize;
   const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
@@ -263,14 +233,22 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
   if (text && !box) ignored(node, text);
   if (!hasExtent(node, w, h, box)) return;
   state.transform = state.transform * Affine{1, 0, 0, 1, x, y};
-  const Affine frame = state.transform;
+  Affine frame = state.transform;
   state.lengths.width = w;
   state.lengths.height = h;
+  Affine fit;
   if (box) {
-    state.transform = state.transform * fitViewBox(*box, w, h, aspectRatio(node));
+    fit = fitViewBox(*box, w, h, aspectRatio(node));
     state.lengths.width = box->width;
     state.lengths.height = box->height;
   }
+  if (document_.name(node) == "symbol" && (node.attribute("refX") || node.attribute("refY"))) { // (SVG 2, 5.5.2)
+    const ViewBox whole = box.value_or(ViewBox{0, 0, w, h});
+    const Point at = fit({referenceAlong(node, "refX", state.lengths, LengthAxis::X, whole.x, whole.width),
+                          referenceAlong(node, "refY", state.lengths, LengthAxis::Y, whole.y, whole.height)});
+    frame = frame * Affine{1, 0, 0, 1, node.attribute("refX") ? -at.x : 0, node.attribute("refY") ? -at.y : 0};
+  }
+  state.transform = frame * fit;
   if (mode_ != Mode::Paint || state.style.overflowVisible) return visitChildren(node, state);
   clipped(node, frame, w, h, state, [&] { visitChildren(node, state); });
 }
@@ -292,7 +270,10 @@ void Importer::clipped(pugi::xml_node node, const Affine& frame, double w, doubl
     state.group = static_cast<uint32_t>(result_.groups.size());
     ++state.clips;
   }
+  const size_t inner = result_.groups.size();
   inside();
+  for (size_t g = inner; g < result_.groups.size(); ++g) // what filters make reaches further than paths do
+    if (clips && result_.groups[g].layer && !result_.groups[g].layer->steps.empty()) return;
   const double slack = 1e-3 * std::max(w, h), area = frame.a * frame.d - frame.b * frame.c;
   for (size_t i = before; i < result_.paths.size(); ++i)
     for (size_t k = 0; k + 1 < result_.paths[i].points.size(); k += 2) {
@@ -318,11 +299,7 @@ void Importer::reportUnsupported(pugi::xml_node node, std::string_view name, con
   const struct {
     bool is;
     const char* what;
-  } features[] = {{mode_ == Mode::Clip && !style.clipPath.empty(), "clip-path inside a clipPath"},
-                  {style.mask, "mask"},
-                  {style.filter, "filter"},
-                  {style.blendMode, "mix-blend-mode"},
-                  {style.unsupportedEffect, "vector-effect other than non-scaling-stroke"},
+  } features[] = {{style.unsupportedEffect, "vector-effect other than non-scaling-stroke"},
                   {isShape && style.mixesLinear && isFaint, "color-interpolation of what is painted, linearRGB,"}};
   for (const auto& f : features)
     if (f.is)
@@ -441,7 +418,7 @@ void Importer::emit(const Shape& shape, const Affine& transform, GpgpFillRule ru
   points_ += shape.points.size() + shape.verbs.size();
   if (points_ > limits_.points)
     return stop(node, std::string("more than ") + std::to_string(limits_.points) + " points");
-  if (result_.paths.size() >= limits_.paths)
+  if (result_.paths.size() + aside_.size() >= limits_.paths)
     return stop(node, std::string("more than ") + std::to_string(limits_.paths) + " paths");
   ImportedPath path;
   path.points.reserve(2 * shape.points.size());

@@ -65,7 +65,12 @@ private:
     size_t depth = 0;
     const Context* context = nullptr; ///< the innermost <use> around, whose paints context-fill and -stroke are
     uint32_t group = 0;               ///< 1 + index in the result
-    uint32_t fading = 0, clips = 0;   ///< groups around that fade, and that clip
+    uint32_t fading = 0, clips = 0, layers = 0; ///< groups around that fade, that clip, and layers
+  };
+  /// By what an element's effects are measured.
+  struct Frame {
+    const Affine& space; ///< from the element's coordinates
+    const std::function<Box()>& box;
   };
 
   /// A <use>, or a shape with markers, that is being shown.
@@ -96,6 +101,14 @@ private:
   /// Whether a style sheet's media are ours; what cannot be told is said.
   bool isForScreen(std::string_view media, const Place& place, const std::string& who);
   void readStyleElement(pugi::xml_node node, const Place& place, std::string_view name);
+  /// Why a file is not read: what it does; else it was.
+  struct Read {
+    const char* why = nullptr;
+    bool isInvalid = false, isTooLarge = false, isRefused = false; ///< the last: it is not wanted
+  };
+  /// Reads a file that lies in the drawing's folder or below it, by its name relative to `folder`.
+  Read readBeside(std::string_view href, std::string_view folder, size_t limit, std::string& path, std::string& bytes,
+                  const std::function<bool()>& isWanted = {});
   /// Reads a sheet of another file, whose name is relative to the folder of the one that refers to it.
   void readSheet(std::string_view href, std::string_view folder, const Place& place, size_t depth);
   void parseSheet(std::string_view text, std::string_view folder, const Place& place, size_t depth);
@@ -114,8 +127,6 @@ private:
   void content(pugi::xml_node node, std::string_view name, State& state, const double* useSize = nullptr);
   void reportChildren(pugi::xml_node node);
   void draw(pugi::xml_node node, std::string_view name, const State& state);
-  /// Draws what `inside` draws with the state's clip path and opacity around it.
-  void grouped(pugi::xml_node node, std::string_view name, State& state, const std::function<void(State&)>& inside);
   /// Draws what `inside` draws, clipped to (0, 0, width, height) of the coordinates `frame` where it reaches beyond.
   void clipped(pugi::xml_node node, const Affine& frame, double width, double height, State& state,
                const std::function<void()>& inside);
@@ -124,12 +135,15 @@ private:
   struct Marker;
   /// False where there is none to draw; what is wrong is said.
   bool readMarker(const std::string& value, pugi::xml_node node, const State& state, Marker& marker);
+  /// refX or refY of a marker or symbol, where its box begins and how large it is.
+  double referenceAlong(pugi::xml_node node, const char* name, const LengthContext& lengths, LengthAxis axis,
+                        double from, double size);
   /// `silent`: the verbs that end where the shape has no vertex.
   void drawMarkers(pugi::xml_node node, const Shape& shape, const std::vector<size_t>& silent, const State& state);
 
   // clip.cpp
   /// Puts what the element refers to around it; says so where that cannot be.
-  void clip(pugi::xml_node node, std::string_view name, State& state);
+  void clip(pugi::xml_node node, std::string_view name, State& state, const Frame* of);
   /// Of an element that others refer to: what it has from where it stands, not from them.
   Style styleOf(pugi::xml_node node, const LengthContext& lengths);
   /// Of all shapes inside, strokes and clips aside, in coordinates given by their transform to the page.
@@ -169,9 +183,12 @@ private:
   struct Picture { // that was decoded; width 0: it could not be
     uint32_t index = 0, width = 0, height = 0;
     const char* format = nullptr; ///< of one that is not decoded
+    const char* why = nullptr;    ///< of a file that is not read
   };
   const Picture* pictureOf(pugi::xml_node node);
   void drawImage(pugi::xml_node node, const State& state);
+  /// The node's picture where it lies: x, y, width, height. What cannot be drawn is said.
+  void drawPicture(pugi::xml_node node, const State& state, const ViewBox& place);
 
   // shapes.cpp
   /// `silent` receives the verbs of a path that end where it has no vertex.
@@ -185,13 +202,14 @@ private:
 
   // cascade.cpp
   void cascade(pugi::xml_node node, const Style& parent, const LengthContext& lengths, Style& style);
-  /// What the transform and transform-origin properties come to.
-  Affine transformOf(pugi::xml_node node, const Style& style, const LengthContext& lengths);
+  /// What the properties that transform come to. `box`: the element's own, for transform-box.
+  Affine transformOf(pugi::xml_node node, const Style& style, const LengthContext& lengths,
+                     const std::function<Box()>& box = {});
   std::optional<Ink> resolve(const Paint& paint, const Surface& surface, pugi::xml_node node, const char* property);
   Box boxOfContext(const Context& context);
 
   // gradient.cpp
-  /// A gradient or pattern, the one it refers to, and so on.
+  /// A gradient, pattern or filter, the one it refers to, and so on.
   struct GradientChain {
     std::vector<pugi::xml_node> gradients;
     bool cyclic = false;        ///< the last refers to one of them
@@ -200,6 +218,33 @@ private:
   const GradientChain& chainOf(pugi::xml_node gradient);
   pugi::xml_attribute gradientAttribute(const GradientChain& chain, const char* name) const;
   std::vector<GpgpGradientStop> gradientStops(const GradientChain& chain, const LengthContext& lengths);
+
+  // layer.cpp
+  /// Draws what `inside` draws with the state's clip path, mask, filter, opacity and mode of mixing around it. Those of
+  /// a mask are measured by what it masks.
+  void grouped(pugi::xml_node node, std::string_view name, State& state, const std::function<void(State&)>& inside,
+               const Frame* of = nullptr);
+  /// x, y, width and height of a mask or filter; nothing where it has no extent.
+  std::optional<Box> effectRegion(const GradientChain& chain, const char* unitsName, const State& state,
+                                  const std::function<Box()>& box);
+  /// From the coordinates in which an element's effects are given.
+  Affine spaceOf(pugi::xml_node node, std::string_view name, const State& state);
+  Box boxOfElement(pugi::xml_node node, std::string_view name, const State& state, const Affine& space);
+  /// Puts what `show` draws into a group that is shown only where something refers to it: 1 + index; 0: it is empty.
+  uint32_t aside(State inner, const std::function<void(State&)>& show);
+  /// What a mask property refers to; what is wrong is said.
+  pugi::xml_node maskOf(pugi::xml_node from, const std::string& value);
+  /// False where nothing is shown through it.
+  bool mask(pugi::xml_node target, pugi::xml_node node, const State& state, const Affine& space,
+            const std::function<Box()>& box, ImportedLayer& layer);
+  /// Around what was drawn since, effects included.
+  Box drawnBox(size_t firstPath, size_t firstGroup, const Affine& back) const;
+
+  // filter.cpp, primitives.cpp
+  struct FilterReader;
+  /// Whether the state's filter counts; what is wrong is said.
+  bool hasFilter(pugi::xml_node node, const State& state);
+
   // pattern.cpp
   /// Nothing where its tiles have no extent, or there is no box to measure them by.
   std::shared_ptr<const Tiling> tilingOf(const GradientChain& chain, const Surface& surface);
@@ -238,7 +283,13 @@ private:
   Imported result_;
   std::vector<pugi::xml_node> used_; // the <use> targets we are inside of
   size_t elements_ = 0, points_ = 0, work_ = 0, steps_ = 0;
-  bool stopped_ = false, empty_ = false; ///< the last: the root has a size of zero
+  std::vector<ImportedPath> aside_; // of groups that masks and filters refer to
+  size_t imageBytes_ = 0;           // of other files
+  size_t layerCount_ = 0, blendCount_ = 0, filterSteps_ = 0, filterNumbers_ = 0;
+  bool mayBlend_ = false;   // something speaks of modes of mixing
+  bool sharesClips_ = true; // neighbours may share one: there are no layers, whose paths lie in a row
+  bool clipsInside_ = false, clipsApart_ = false; // shapes of a clip have clips; they are drawn with them
+  bool stopped_ = false, empty_ = false;          ///< the last: the root has a size of zero
   enum class Mode {
     Paint,
     Clip,   // shapes alone count

@@ -102,25 +102,6 @@ double directionAt(const Vertex& v) {
   return v.in + std::remainder(v.out - v.in, 2 * std::numbers::pi) / 2;
 }
 
-/// A number of degrees, or an angle with its unit; in radians.
-bool parseAngle(std::string_view text, double& radians) {
-  constexpr struct {
-    std::string_view unit;
-    double factor;
-  } units[] = {{"", std::numbers::pi / 180},
-               {"deg", std::numbers::pi / 180},
-               {"grad", std::numbers::pi / 200},
-               {"rad", 1},
-               {"turn", 2 * std::numbers::pi}};
-  Scanner s(text);
-  double number = 0;
-  if (!s.number(number)) return false;
-  const std::string unit = lowered(s.name());
-  for (const auto& u : units)
-    if (s.done() && u.unit == unit) return radians = number * u.factor, true;
-  return false;
-}
-
 } // namespace
 
 /// What a marker is, apart from where it stands.
@@ -133,6 +114,16 @@ struct Importer::Marker {
   Affine fit;      ///< from its coordinates into the viewport of its size
   Point reference; ///< in that viewport
 };
+
+double Importer::referenceAlong(pugi::xml_node node, const char* name, const LengthContext& lengths, LengthAxis axis,
+                                double from, double size) {
+  constexpr std::string_view words[2][3] = {{"left", "center", "right"}, {"top", "center", "bottom"}};
+  const auto& names = words[axis == LengthAxis::Y];
+  const std::string_view text = trim(node.attribute(name).value());
+  const auto* found = std::find(std::begin(names), std::end(names), text);
+  if (found != std::end(names)) return from + size * 0.5 * static_cast<double>(found - std::begin(names));
+  return length(node, {}, name, lengths, axis, 0);
+}
 
 bool Importer::readMarker(const std::string& value, pugi::xml_node node, const State& state, Marker& marker) {
   if (value.empty()) return false;
@@ -170,12 +161,7 @@ bool Importer::readMarker(const std::string& value, pugi::xml_node node, const S
     lengths.width = marker.box->width, lengths.height = marker.box->height;
   }
   const auto refer = [&](const char* name, LengthAxis axis, double from, double size) {
-    constexpr std::string_view words[2][3] = {{"left", "center", "right"}, {"top", "center", "bottom"}};
-    const auto& names = words[axis == LengthAxis::Y];
-    const std::string_view text = trim(target.attribute(name).value());
-    const auto* found = std::find(std::begin(names), std::end(names), text);
-    if (found != std::end(names)) return from + size * 0.5 * static_cast<double>(found - std::begin(names));
-    return length(target, {}, name, lengths, axis, 0);
+    return referenceAlong(target, name, lengths, axis, from, size);
   };
   const ViewBox whole = marker.box.value_or(ViewBox{0, 0, marker.width, marker.height});
   marker.reference = marker.fit(

@@ -42,12 +42,19 @@ void Importer::paintBackground(const State& state) {
                                                  "viewBox: <svg> is drawn without it");
   group_ = state.group;
   // A transform of its own moves its box as well, from the coordinates of the page.
-  const Affine map = state.style.transform.empty() ? Affine{} : state.transform * inverseOf(toPage_);
+  const Affine map = !state.style.isMoved() ? Affine{} : state.transform * inverseOf(toPage_);
   emit(rectangle(0, 0, result_.width, result_.height, 0, 0, 1), map, GPGP_FILL_NON_ZERO, {color, nullptr},
        state.opacity, root);
 }
 
 Importer::State Importer::begin() {
+  mayBlend_ = document_.mayBlend();
+  sharesClips_ = !document_.mayLayer();
+  for (const pugi::xml_node clipPath : document_.all({"clipPath"})) // shapes in it that have clips make it a layer
+    for (const pugi::xml_node shape : clipPath.children())
+      if (shape.attribute("clip-path") ||
+          std::string_view(shape.attribute("style").value()).find("clip-path") != std::string_view::npos)
+        sharesClips_ = false;
   readSheets();
   const pugi::xml_node root = document_.root();
   const pugi::xml_attribute boxText = root.attribute("viewBox");

@@ -41,6 +41,24 @@ ImportedPath moved(const ImportedPath& path, double dx, double dy) {
   return copy;
 }
 
+/// The same elsewhere, where groups have other names.
+template <class Rename>
+std::shared_ptr<const ImportedLayer> moved(const ImportedLayer& layer, double dx, double dy, const Rename& renamed) {
+  auto copy = std::make_shared<ImportedLayer>(layer);
+  GpgpLayer& l = copy->layer;
+  l.mask = renamed(l.mask);
+  const auto shift = [](float& value, double by) { value = static_cast<float>(static_cast<double>(value) + by); };
+  for (float* t : {l.maskTransform, l.filterTransform}) shift(t[4], dx), shift(t[5], dy);
+  for (GpgpFilterStep& step : copy->steps) {
+    if (!step.group) continue;
+    step.group = renamed(step.group);
+    float* back = step.values; // from the drawing, where the group has moved
+    const auto at = [back](size_t i) { return static_cast<double>(back[i]); };
+    shift(back[4], -(at(0) * dx + at(2) * dy)), shift(back[5], -(at(1) * dx + at(3) * dy));
+  }
+  return copy;
+}
+
 } // namespace
 
 std::shared_ptr<const Importer::Tiling> Importer::tilingOf(const GradientChain& chain, const Surface& surface) {
@@ -92,7 +110,7 @@ std::shared_ptr<const Importer::Tiling> Importer::tilingOf(const GradientChain& 
   Affine map = surface.space;
   for (const pugi::xml_node pattern : chain.gradients) { // the property, whose attribute patternTransform is
     const Style style = styleOf(pattern, state.lengths);
-    if (style.transform.empty()) continue;
+    if (!style.isMoved()) continue;
     map = map * transformOf(pattern, style, lengths);
     break;
   }
@@ -140,8 +158,9 @@ void Importer::emitTiles(const Shape& shape, const Affine& transform, GpgpFillRu
   State inner = tiling.state;
   if (inner.clips + 1 >= shader::kMaxClipDepth) return refused("inside too many clips, which is not supported");
   const bool fades = opacity < 1;
-  if (fades && inner.fading >= shader::kMaxLayerDepth)
-    return refused("inside too many that fade, which is not supported");
+  if (inner.clips + inner.fading + inner.layers + 1 >= GPGP_MAX_LAYER_DEPTH ||
+      (fades && !detail_.layers && inner.fading >= shader::kMaxLayerDepth))
+    return refused("inside too many that fade or are masked, which is not supported");
   if (inner.depth >= limits_.depth) return refused("nested too deeply, which is not supported");
 
   // What is painted clips the tiles.
@@ -150,7 +169,8 @@ void Importer::emitTiles(const Shape& shape, const Affine& transform, GpgpFillRu
   std::swap(kept, result_.paths);
   emit(shape, transform, rule, {}, 1, node);
   std::swap(kept, result_.paths);
-  const size_t groupsBefore = result_.groups.size();
+  const size_t groupsBefore = result_.groups.size(), asideBefore = aside_.size(), blendsBefore = blendCount_;
+  const size_t layersBefore = layerCount_, stepsBefore = filterSteps_;
   result_.groups.push_back({group, static_cast<float>(std::clamp(opacity, 0.0, 1.0)), true, std::move(kept)});
   inner.group = static_cast<uint32_t>(result_.groups.size());
   ++inner.clips;
@@ -166,29 +186,45 @@ void Importer::emitTiles(const Shape& shape, const Affine& transform, GpgpFillRu
   used_.pop_back();
   std::swap(tile, result_.paths);
   group_ = group;
-  if (tile.empty()) {
+  const std::vector<ImportedPath> tileAside(aside_.begin() + static_cast<ptrdiff_t>(asideBefore), aside_.end());
+  aside_.resize(asideBefore);
+  const auto takeBack = [&] {
     madeClips_.clear();
     result_.groups.resize(groupsBefore);
-    return;
+  };
+  if (tile.empty()) return takeBack();
+  if (blendCount_ > blendsBefore) { // a tile is a picture of its own
+    const auto isolated = std::make_shared<ImportedLayer>();
+    isolated->layer.isolated = 1;
+    result_.groups[outer - 1].layer = isolated;
   }
+  const auto manyLayers = tiles * static_cast<double>(layerCount_ - layersBefore),
+             manySteps = tiles * static_cast<double>(filterSteps_ - stepsBefore);
+  if (manyLayers > static_cast<double>(limits_.layers) || manySteps > static_cast<double>(limits_.filterSteps)) {
+    takeBack();
+    return refused("whose tiles have more masks, filters and blend modes than are supported");
+  }
+  layerCount_ += static_cast<size_t>(manyLayers), filterSteps_ += static_cast<size_t>(manySteps);
   const bool isPlain = result_.groups.size() > own && !result_.groups[own].clipped; // the one that clips the tile
   if (isPlain)
     for (ImportedPath& path : tile)
       if (path.group == own + 1) path.group = outer;
   const bool grouped = std::any_of(tile.begin(), tile.end(), [&](const ImportedPath& p) { return p.group != outer; });
   if (grouped && tiles > kMaxGroupedTiles) {
-    madeClips_.clear();
-    result_.groups.resize(groupsBefore);
+    takeBack();
     return refused("of more than 4096 tiles that reach beyond their edges or have groups, which is not supported");
   }
   size_t points = 0;
-  for (const ImportedPath& path : tile) points += path.points.size() / 2 + path.verbs.size();
+  for (const auto* paths : {&std::as_const(tile), &tileAside})
+    for (const ImportedPath& path : *paths) points += path.points.size() / 2 + path.verbs.size();
   const bool copies =
       grouped || std::any_of(tile.begin(), tile.end(), [](const ImportedPath& p) { return p.gradient || p.image; });
   points_ += static_cast<size_t>(tiles) * points;
   if (points_ > limits_.points)
     return stop(node, std::string("more than ") + std::to_string(limits_.points) + " points");
-  if (result_.paths.size() + tile.size() * (copies ? static_cast<size_t>(tiles) : 1) > limits_.paths)
+  if (result_.paths.size() + aside_.size() +
+          (tile.size() + tileAside.size()) * (copies ? static_cast<size_t>(tiles) : 1) >
+      limits_.paths)
     return stop(node, std::string("more than ") + std::to_string(limits_.paths) + " paths");
   const auto eachTile = [&](const auto& place) {
     for (double row = top; row < bottom; ++row)
@@ -218,12 +254,17 @@ void Importer::emitTiles(const Shape& shape, const Affine& transform, GpgpFillRu
     const auto renamed = [&](uint32_t id) { return id > own ? id + offset : id; };
     for (const ImportedGroup& one : groups) {
       ImportedGroup copy{renamed(one.parent), one.opacity, one.clipped, {}};
+      if (one.layer) copy.layer = moved(*one.layer, dx, dy, renamed);
       for (const ImportedPath& path : one.clip) copy.clip.push_back(moved(path, dx, dy));
       result_.groups.push_back(std::move(copy));
     }
     for (const ImportedPath& path : tile) {
       result_.paths.push_back(moved(path, dx, dy));
       result_.paths.back().group = renamed(path.group);
+    }
+    for (const ImportedPath& path : tileAside) {
+      aside_.push_back(moved(path, dx, dy));
+      aside_.back().group = renamed(path.group);
     }
   });
 }

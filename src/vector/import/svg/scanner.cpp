@@ -102,6 +102,24 @@ std::string_view Scanner::name() {
   return text_.substr(begin, at_ - begin);
 }
 
+bool parseAngle(std::string_view text, double& radians) {
+  constexpr struct {
+    std::string_view unit;
+    double factor;
+  } units[] = {{"", std::numbers::pi / 180},
+               {"deg", std::numbers::pi / 180},
+               {"grad", std::numbers::pi / 200},
+               {"rad", 1},
+               {"turn", 2 * std::numbers::pi}};
+  Scanner s(text);
+  double number = 0;
+  if (!s.number(number)) return false;
+  const std::string unit = lowered(s.name());
+  for (const auto& u : units)
+    if (s.done() && u.unit == unit) return radians = number * u.factor, true;
+  return false;
+}
+
 bool parseLength(std::string_view text, const LengthContext& context, LengthAxis axis, double& value) {
   text = trim(text);
   if (isMath(text)) return evaluate(text, context, axis, value);

@@ -58,6 +58,9 @@ bool parseLength(std::string_view text, const LengthContext& context, LengthAxis
 /// malformed.
 bool parseTransform(std::string_view text, const LengthContext& context, Affine& transform);
 
+/// A number of degrees, or an angle with its unit; in radians.
+bool parseAngle(std::string_view text, double& radians);
+
 /// The point around which a transform-origin turns things; false where it is malformed.
 bool parseOrigin(std::string_view text, const LengthContext& context, Point& origin);
 

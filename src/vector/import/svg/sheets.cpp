@@ -1,6 +1,6 @@
-// The style sheets of a drawing (SVG 2, 6.3 to 6.5): <?xml-stylesheet?>, HTML's <link> and <style>, <style>, and what
-// these import. Files are asked for by their path relative to the drawing's folder, and lie in it or below; no address
-// with a scheme or a host is ever followed.
+// Files beside a drawing, and its style sheets (SVG 2, 6.3 to 6.5): <?xml-stylesheet?>, HTML's <link> and <style>,
+// <style>, and what these import. Files are asked for by their path relative to the drawing's folder, and lie in it or
+// below; no address with a scheme or a host is ever followed.
 #include "vector/import/svg/data_uri.h"
 #include "vector/import/svg/importer.h"
 #include "vector/import/svg/media.h"
@@ -159,8 +159,30 @@ bool Importer::isForScreen(std::string_view media, const Place& place, const std
 
 void Importer::parseSheet(std::string_view text, std::string_view folder, const Place& place, size_t depth) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  mayBlend_ |= text.find("-blend-") != text.npos;
+  for (const char* effect : {"-blend-", "filter", "mask", "clip-path"}) sharesClips_ &= text.find(effect) == text.npos;
   sheet_.parse(text, place, reporter_,
                [&](std::string_view uri, const Place& from) { readSheet(uri, folder, from, depth + 1); });
+}
+
+Importer::Read Importer::readBeside(std::string_view href, std::string_view folder, size_t limit, std::string& path,
+                                    std::string& bytes, const std::function<bool()>& isWanted) {
+  if (href.empty() || href[0] == '#') return {"is no file"};
+  if (hasScheme(href) || href.starts_with("//")) return {"is not beside the drawing, and other places are not read"};
+  if (href[0] == '/') return {"has an absolute path, and only paths from the drawing's folder are read"};
+  const std::string plain = percentDecoded(href.substr(0, href.find_first_of("?#")));
+  path = normalised(std::string(folder) + plain);
+  if (path.empty() || plain.find('\0') != plain.npos || plain.find('\\') != plain.npos)
+    return {"leads out of the drawing's folder, where nothing is read"};
+  if (isWanted && !isWanted()) return {nullptr, false, false, true};
+  if (!files_ || !files_->read) return {"is another file, and no files are read here"};
+  size_t size = 0, read = 0;
+  if (files_->read(files_->userData, path.c_str(), nullptr, 0, &size) != GPGP_SUCCESS) return {"cannot be read", true};
+  if (size > limit) return {nullptr, false, true};
+  bytes.resize(size);
+  if (size && (files_->read(files_->userData, path.c_str(), bytes.data(), size, &read) != GPGP_SUCCESS || read != size))
+    return {"cannot be read", true};
+  return {};
 }
 
 void Importer::readSheet(std::string_view href, std::string_view folder, const Place& place, size_t depth) {
@@ -179,26 +201,15 @@ void Importer::readSheet(std::string_view href, std::string_view folder, const P
     bytes.assign(data.begin(), data.end());
     name = "data:";
   } else {
-    if (href.empty() || href[0] == '#') return refused("is no file");
-    if (hasScheme(href) || href.starts_with("//"))
-      return refused("is not beside the drawing, and other places are not read");
-    if (href[0] == '/') return refused("has an absolute path, and only paths from the drawing's folder are read");
-    const std::string plain = percentDecoded(href.substr(0, href.find_first_of("?#")));
-    path = normalised(std::string(folder) + plain);
-    if (path.empty() || plain.find('\0') != plain.npos || plain.find('\\') != plain.npos)
-      return refused("leads out of the drawing's folder, where nothing is read");
-    if (std::find(openSheets_.begin(), openSheets_.end(), path) != openSheets_.end()) return invalid("imports itself");
-    if (!files_ || !files_->read) return refused("is another file, and no files are read here");
-    size_t size = 0, read = 0;
-    if (files_->read(files_->userData, path.c_str(), nullptr, 0, &size) != GPGP_SUCCESS)
-      return invalid("cannot be read");
-    if (size > limits_.sheetBytes - std::min(sheetBytes_, limits_.sheetBytes))
+    const size_t left = limits_.sheetBytes - std::min(sheetBytes_, limits_.sheetBytes);
+    const Read read = readBeside(href, folder, left, path, bytes, [&] {
+      return std::find(openSheets_.begin(), openSheets_.end(), path) == openSheets_.end();
+    });
+    if (read.isRefused) return invalid("imports itself");
+    if (read.isTooLarge)
       return refused("makes more than the " + std::to_string(limits_.sheetBytes) +
                      " bytes that are read of style sheets");
-    bytes.resize(size);
-    if (size &&
-        (files_->read(files_->userData, path.c_str(), bytes.data(), size, &read) != GPGP_SUCCESS || read != size))
-      return invalid("cannot be read");
+    if (read.why) return read.isInvalid ? invalid(read.why) : refused(read.why);
     const std::string_view own = reporter_.name();
     name = sheetNames_.emplace_back(std::string(folderOf(own)) + path);
   }

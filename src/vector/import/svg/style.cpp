@@ -162,7 +162,7 @@ constexpr Word<Cap> kCaps[] = {{"butt", Cap::Butt}, {"round", Cap::Round}, {"squ
 constexpr Word<Join> kJoins[] = {{"miter", Join::Miter},
                                  {"round", Join::Round},
                                  {"bevel", Join::Bevel},
-                                 {"miter-clip", Join::Miter},
+                                 {"miter-clip", Join::MiterClip},
                                  {"arcs", Join::Miter}};
 constexpr Word<bool> kInterpolations[] = {{"auto", false}, {"srgb", false}, {"linearrgb", true}};
 constexpr Word<bool> kOverflows[] = {
@@ -190,10 +190,9 @@ bool setColor(const Context& c) {
   if (isCurrentColor(c.value)) return c.style.color = c.parent.color, true;
   return parseColor(c.value, c.style.color);
 }
-bool setStopColor(const Context& c) {
-  Style::StopColor& stop = c.style.stopColor;
-  stop.isCurrent = isCurrentColor(c.value);
-  return stop.isCurrent || parseColor(c.value, stop.color);
+bool setColorOr(const Context& c, Style::StopColor& color) {
+  const bool isCurrent = isCurrentColor(c.value);
+  return (isCurrent || parseColor(c.value, color.color)) && (color.isCurrent = isCurrent, true);
 }
 /// normal, or some of fill, stroke and markers, each once; what is left out comes last, in this order.
 bool setPaintOrder(const Context& c) {
@@ -274,11 +273,6 @@ bool setVectorEffect(const Context& c) {
   c.style.unsupportedEffect = unknown;
   return true;
 }
-bool setBackgroundColor(const Context& c) {
-  Style::StopColor& color = c.style.background.color;
-  color.isCurrent = isCurrentColor(c.value);
-  return color.isCurrent || parseColor(c.value, color.color);
-}
 /// The shorthand (CSS Backgrounds 3, 2.10): its colour, and whether it has an image.
 bool setBackground(const Context& c) {
   constexpr std::string_view words[] = {"none",  "repeat", "no-repeat", "repeat-x",   "repeat-y",    "space",
@@ -345,7 +339,13 @@ bool setVertical(const Context& c) {
              lower.starts_with("tb") || lower.starts_with("vertical") || lower.starts_with("sideways"),
          !lower.empty();
 }
-bool setRefers(const Context& c, bool& flag) { return flag = !isWord(c.value, "none") && !c.value.empty(), true; }
+bool setReference(const Context& c, std::string& reference) {
+  return reference = isWord(c.value, "none") ? std::string_view() : c.value, true;
+}
+constexpr Word<bool> kTransformBoxes[] = {{"view-box", false}, {"fill-box", true}, {"content-box", true}};
+constexpr Word<bool> kIsolations[] = {{"auto", false}, {"isolate", true}};
+constexpr Word<bool> kMaskTypes[] = {{"luminance", false}, {"alpha", true}};
+constexpr Word<bool> kFilterInterpolations[] = {{"auto", true}, {"srgb", false}, {"linearrgb", true}};
 
 struct Property {
   std::string_view name;
@@ -381,16 +381,27 @@ const Property kProperties[] = {
     GPGP_PROPERTY("paint-order", paintOrder, setPaintOrder(c)),
     GPGP_PROPERTY("vector-effect", nonScalingStroke, setVectorEffect(c)),
     GPGP_PROPERTY("background", background, setBackground(c)),
-    GPGP_PROPERTY("background-color", background.color, setBackgroundColor(c)),
-    GPGP_PROPERTY("stop-color", stopColor, setStopColor(c)),
+    GPGP_PROPERTY("background-color", background.color, setColorOr(c, c.style.background.color)),
+    GPGP_PROPERTY("stop-color", stopColor, setColorOr(c, c.style.stopColor)),
     GPGP_PROPERTY("stop-opacity", stopOpacity, parseOpacity(c.value, c.style.stopOpacity)),
-    GPGP_PROPERTY("clip-path", clipPath, (c.style.clipPath = isWord(c.value, "none") ? "" : c.value, true)),
+    GPGP_PROPERTY("clip-path", clipPath, setReference(c, c.style.clipPath)),
     GPGP_PROPERTY("clip-rule", clipRule, choose(c.value, kRules, c.style.clipRule)),
     GPGP_PROPERTY("transform", transform, (c.style.transform = c.value, true)),
     GPGP_PROPERTY("transform-origin", transformOrigin, (c.style.transformOrigin = c.value, true)),
-    GPGP_PROPERTY("mask", mask, setRefers(c, c.style.mask)),
-    GPGP_PROPERTY("filter", filter, setRefers(c, c.style.filter)),
-    GPGP_PROPERTY("mix-blend-mode", blendMode, (c.style.blendMode = !isWord(c.value, "normal"), true)),
+    GPGP_PROPERTY("translate", translate, setReference(c, c.style.translate)),
+    GPGP_PROPERTY("rotate", rotate, setReference(c, c.style.rotate)),
+    GPGP_PROPERTY("scale", scale, setReference(c, c.style.scale)),
+    GPGP_PROPERTY("transform-box", byOwnBox, choose(c.value, kTransformBoxes, c.style.byOwnBox)),
+    GPGP_PROPERTY("mask", mask, setReference(c, c.style.mask)),
+    GPGP_PROPERTY("mask-type", masksByAlpha, choose(c.value, kMaskTypes, c.style.masksByAlpha)),
+    GPGP_PROPERTY("filter", filter, parseFilter(c.value, c.lengths, c.style.filter)),
+    GPGP_PROPERTY("flood-color", floodColor, setColorOr(c, c.style.floodColor)),
+    GPGP_PROPERTY("flood-opacity", floodOpacity, parseOpacity(c.value, c.style.floodOpacity)),
+    GPGP_PROPERTY("lighting-color", lightingColor, setColorOr(c, c.style.lightingColor)),
+    GPGP_PROPERTY("color-interpolation-filters", filtersLinear,
+                  choose(c.value, kFilterInterpolations, c.style.filtersLinear)),
+    GPGP_PROPERTY("mix-blend-mode", blend, parseBlendMode(c.value, c.style.blend)),
+    GPGP_PROPERTY("isolation", isolated, choose(c.value, kIsolations, c.style.isolated)),
     GPGP_PROPERTY("font-family", text.families, (c.style.text.families = c.value, !c.value.empty())),
     GPGP_PROPERTY("font-weight", text.weight, setWeight(c)),
     GPGP_PROPERTY("font-style", text.italic, (c.style.text.italic = !isWord(c.value, "normal"), !c.value.empty())),
@@ -435,10 +446,18 @@ Style Style::inherited() const {
   s.stopColor = fresh.stopColor;
   s.stopOpacity = fresh.stopOpacity;
   s.clipPath.clear();
+  s.mask.clear();
+  s.filter.clear();
+  s.blend = fresh.blend;
+  s.isolated = s.masksByAlpha = false;
+  s.floodColor = fresh.floodColor;
+  s.floodOpacity = fresh.floodOpacity;
+  s.lightingColor = fresh.lightingColor;
   s.transform.clear();
   s.transformOrigin.clear();
+  s.translate.clear(), s.rotate.clear(), s.scale.clear();
+  s.byOwnBox = false;
   s.geometry.clear();
-  s.mask = s.filter = s.blendMode = false;
   return s;
 }
 
@@ -455,16 +474,14 @@ bool isGeometry(std::string_view name) {
 
 bool isPresentationAttribute(std::string_view name) {
   constexpr std::string_view unsupported[] = {"shape-rendering", "image-rendering", "clip"},
-                             no[] = {"font", "background", "background-color"};
+                             no[] = {"font",           "background", "background-color",
+                                     "mix-blend-mode", "isolation",  "translate",
+                                     "rotate",         "scale",      "transform-box"};
   return (findProperty(name) && !oneOf(name, no)) || oneOf(name, unsupported);
 }
 
 bool isUnsupported(std::string_view name, std::string_view value) {
-  constexpr std::string_view names[] = {"translate",
-                                        "rotate",
-                                        "scale",
-                                        "transform-box",
-                                        "offset-path",
+  constexpr std::string_view names[] = {"offset-path",
                                         "offset",
                                         "backdrop-filter",
                                         "mask-image",
@@ -524,7 +541,8 @@ bool hasUnsupported(std::string_view value) {
       "accentcolor", "accentcolortext", "activetext",   "buttonborder",     "buttonface", "buttontext",    "canvas",
       "canvastext",  "field",           "fieldtext",    "graytext",         "highlight",  "highlighttext", "linktext",
       "mark",        "marktext",        "selecteditem", "selecteditemtext", "visitedtext"};
-  if (oneOf(trim(lower), systemColors)) return true;
+  constexpr std::string_view boxes[] = {"stroke-box", "border-box"};
+  if (oneOf(trim(lower), systemColors) || oneOf(trim(lower), boxes)) return true;
   if (lower.find('{') != lower.npos) return true;                                             // rules inside of others
   if (lower.find("(from ") != lower.npos || lower.find("( from ") != lower.npos) return true; // a colour of another one
   for (Scanner s(lower); !s.done();) {

@@ -4,7 +4,10 @@
 #include "vector/import/svg/scanner.h"
 #include "vector/import/svg/values.h"
 
+#include <gpgp/layers.h>
+
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -40,6 +43,28 @@ struct TextStyle {
   std::string baselineShift, alignmentBaseline, decoration;
 };
 
+/// A part of the property filter (Filter Effects 1, chapter 5).
+struct FilterFunction {
+  enum class Kind {
+    Reference,
+    Blur,
+    DropShadow,
+    Brightness,
+    Contrast,
+    Grayscale,
+    HueRotate,
+    Invert,
+    Opacity,
+    Saturate,
+    Sepia
+  };
+  Kind kind = Kind::Reference;
+  std::string reference;      ///< "#id"; empty: what is no reference into this file
+  double amount = 0;          ///< a standard deviation, an angle in radians, or a factor
+  double x = 0, y = 0;        ///< a shadow's offset
+  std::optional<Color> color; ///< a shadow's; none: that of the element
+};
+
 struct Style {
   // inherited
   Paint fill{Paint::Kind::Solid, {}, {}, Paint::Kind::None, false}, stroke;
@@ -50,6 +75,7 @@ struct Style {
   std::vector<double> dashes;
   Color color;
   bool visible = true, mixesLinear = false; ///< the last: of its gradient's stops
+  bool filtersLinear = true;
   double fontSize = 16;
   enum class Part { Fill, Stroke, Markers };
   std::array<Part, 3> paintOrder{Part::Fill, Part::Stroke, Part::Markers};
@@ -64,8 +90,15 @@ struct Style {
     bool isCurrent = false; ///< whatever `color` of the stop says
   } stopColor;
   double stopOpacity = 1;
-  std::string clipPath; ///< what it says, unless none
-  std::string transform, transformOrigin;
+  std::string clipPath, mask; ///< what they say, unless none
+  std::vector<FilterFunction> filter;
+  GpgpBlendMode blend = GPGP_BLEND_NORMAL;
+  bool isolated = false, masksByAlpha = false;
+  StopColor floodColor, lightingColor{{1, 1, 1, 1}, false};
+  double floodOpacity = 1;
+  std::string transform, transformOrigin, translate, rotate, scale;
+  bool byOwnBox = false; ///< transform-box
+  bool isMoved() const { return !(transform.empty() && translate.empty() && rotate.empty() && scale.empty()); }
   /// x, y, r, d and others that style sheets may set in place of attributes; the last of a name counts.
   std::vector<std::pair<std::string, std::string>> geometry;
   const std::string* geometryOf(std::string_view name) const;
@@ -74,12 +107,15 @@ struct Style {
     bool hasImage = false;
   } background;                   ///< counts for the outermost element
   bool unsupportedEffect = false; ///< vector-effect asks for more than lines that do not scale
-  /// mask and filter where they refer to something, mix-blend-mode where it is not normal.
-  bool mask = false, filter = false, blendMode = false;
 
   /// What a child begins with.
   Style inherited() const;
 };
+
+/// A list of filter functions and references; false where it is malformed.
+bool parseFilter(std::string_view text, const LengthContext& lengths, std::vector<FilterFunction>& functions);
+/// A mode of mixing by its name in CSS.
+bool parseBlendMode(std::string_view text, GpgpBlendMode& mode);
 
 /// Whether an attribute of this name sets a property, supported or not, on every element.
 bool isPresentationAttribute(std::string_view name);

@@ -154,9 +154,17 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
     State& inner = *entered;
     inner.opacity *= inner.style.opacity;
     reportUnsupported(child, name, inner.style);
-    if (!inner.style.clipPath.empty())
-      reporter_.warn(document_.place(child),
-                     "clip-path of a part of text is not supported: " + this->element(child) + " is drawn without it");
+    const struct {
+      bool is;
+      const char* what;
+    } effects[] = {{!inner.style.clipPath.empty(), "clip-path"},
+                   {!inner.style.mask.empty(), "mask"},
+                   {!inner.style.filter.empty(), "filter"},
+                   {inner.style.blend != GPGP_BLEND_NORMAL, "mix-blend-mode"}};
+    for (const auto& effect : effects)
+      if (effect.is)
+        reporter_.warn(document_.place(child), std::string(effect.what) + " of a part of text is not supported: " +
+                                                   this->element(child) + " is drawn without it");
     Text::Run next = kept;
     next.node = child;
     if (const pugi::xml_attribute language = child.attribute("xml:lang")) next.language = language.value();
