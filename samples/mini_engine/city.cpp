@@ -71,6 +71,7 @@ City::City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string
   spawnerInfo.base = gpgp.recorder("city spawner");
   spawnerInfo.flags = GPGP_SPAWNER_ORDERED; // where faces coincide, the picture is the same in every run
   spawner_ = gpgp.take(gpgp::Spawner::create(gpgp.context, spawnerInfo), "gpgpCreateSpawner");
+  gpgp.shareScratch(spawner_);
   gpgp.check(spawner_.prewarm(), "gpgpPrewarm");
   makeMaterials();
   if (watch) {
@@ -135,6 +136,7 @@ void City::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
   }
   auto info = gpgp::init<GpgpSpawnInfo>();
   info.base.tag = frame.current;
+  info.base.scratch = gpgp_.scratch();
   info.grammar = grammar_;
   info.axioms = axioms_.forGpgp(kNoAccess, kNoAccess);
   info.axiomCount = axiomCount_;

@@ -33,6 +33,7 @@ Hud::Hud(Device&, Gpgp& gpgp, const Forward& forward, const std::string& frameFi
   info.maxHeight = kMaxExtent.height;
   info.targets = GPGP_CANVAS_TARGET_HISTORY;
   canvas_ = gpgp.take(gpgp::Canvas::create(gpgp.context, info), "gpgpCreateCanvas");
+  gpgp.shareScratch(canvas_);
   target_ = gpgp::init<GpgpTargetInfo>();
   target_.renderPass = forward.renderPass();
   target_.samples = Forward::kSamples;
@@ -79,6 +80,7 @@ void Hud::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
   }
   auto info = gpgp::init<GpgpCanvasInfo>();
   info.base.tag = frame.current;
+  info.base.scratch = gpgp_.scratch();
   info.width = extent_.width;
   info.height = extent_.height;
   info.items = items.data();

@@ -39,6 +39,7 @@ Screen::Screen(Device& device, Gpgp& gpgp, const Forward& forward, const std::st
   info.maxGlyphs = 2048;
   info.targets = GPGP_CANVAS_TARGET_HISTORY;
   canvas_ = gpgp.take(gpgp::Canvas::create(gpgp.context, info), "gpgpCreateCanvas");
+  gpgp.shareScratch(canvas_);
   for (Layer* layer : {&world_, &front_}) {
     auto list = gpgp::init<GpgpListCreateInfo>();
     list.label = layer == &world_ ? "inventory" : "screen";
@@ -169,6 +170,7 @@ void Screen::record(VkCommandBuffer commands, const GpgpFrame& frame, Layer& lay
   if (!layer.shown) return;
   auto info = gpgp::init<GpgpCanvasInfo>();
   info.base.tag = &layer == &world_ ? tagWorld : tagFront;
+  info.base.scratch = gpgp_.scratch();
   info.width = extent_.width * layer.parts;
   info.height = extent_.height;
   info.items = layer.items;
