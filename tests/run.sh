@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything and runs all tests: release, then a build of all but the tests with the
-# second compiler, then again under AddressSanitizer and UndefinedBehaviorSanitizer. Works as root or through sudo,
-# asks nothing, can be run again. Ends with a summary; exits 1 where anything failed.
+# Installs what is missing, builds everything and runs all tests: release, then what tests run again in other forms (on
+# a second device, by passes of other devices, with fewer services), then a build of all but the tests with the second
+# compiler, then all again under AddressSanitizer and UndefinedBehaviorSanitizer. Works as root or through sudo, asks
+# nothing, can be run again. Ends with a summary; exits 1 where anything failed.
 #
 #   tests/run.sh            everything
 #   tests/run.sh --quick    release only
@@ -54,9 +55,9 @@ buildPreset() {
 export MESA_SHADER_CACHE_DIR=$PWD/build
 # And it leaves out its optimiser, which takes longer than it saves. GALLIVM_PERF= in the environment has it back.
 export GALLIVM_PERF=${GALLIVM_PERF-nopt}
-testPreset() { ctest --preset "$1" --parallel "$(jobCount)"; }
+testPreset() { ctest --preset "$1" --parallel "$(jobCount)" "${@:2}"; }
 buildAndTest() {
-  if step "build $1 (build/$1)" buildPreset "$1"; then step "tests, $1" testPreset "$1" || true; fi
+  if step "build $1 (build/$1)" buildPreset "$1"; then step "tests, $1" testPreset "$1" -LE forms || true; fi
 }
 
 # hasTimeFor PERCENT NAME: whether that much of what release took is left of the time; if not, notes it.
@@ -81,6 +82,9 @@ step "real test data (tests/data/fetch.sh)" tests/data/fetch.sh || true
 releaseBegins=$SECONDS
 buildAndTest release
 released=$((SECONDS - releaseBegins))
+if [[ -f build/release/CTestTestfile.cmake ]] && hasTimeFor 30 "tests of other forms, release"; then
+  step "tests of other forms, release" testPreset release -L forms || true
+fi
 if [[ $quick == no ]]; then
   if hasTimeFor 20 "build with clang"; then
     step "build with clang, without tests (build/clang)" buildPreset clang OFF || true
