@@ -31,6 +31,8 @@ Hud::Hud(Device&, Gpgp& gpgp, const Forward& forward, const std::string& frameFi
   info.base = gpgp.recorder("hud canvas");
   info.maxWidth = kMaxExtent.width;
   info.maxHeight = kMaxExtent.height;
+  info.maxPaths = 8192;
+  info.maxTileEntries = 32768;
   info.targets = GPGP_CANVAS_TARGET_HISTORY;
   canvas_ = gpgp.take(gpgp::Canvas::create(gpgp.context, info), "gpgpCreateCanvas");
   gpgp.shareScratch(canvas_);

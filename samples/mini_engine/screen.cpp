@@ -37,6 +37,8 @@ Screen::Screen(Device& device, Gpgp& gpgp, const Forward& forward, const std::st
   info.maxWidth = kMaxExtent.width;
   info.maxHeight = kMaxExtent.height;
   info.maxGlyphs = 2048;
+  info.maxPaths = 8192;
+  info.maxTileEntries = 32768;
   info.targets = GPGP_CANVAS_TARGET_HISTORY;
   canvas_ = gpgp.take(gpgp::Canvas::create(gpgp.context, info), "gpgpCreateCanvas");
   gpgp.shareScratch(canvas_);
