@@ -1,5 +1,6 @@
 #include "cli/visibility/motion.h"
 
+#include "cli/shared/command.h"
 #include "cli/visibility/camera_times.h"
 #include "core/random.h"
 
