@@ -238,20 +238,19 @@ typedef struct GpgpViewMotionInfo {
  *  up, and back towards the viewer. */
 typedef struct GpgpViewMotionCoverage {
   uint32_t cameraCount;
-  /** The viewport for recordings in pixels: the cameras see more than the viewer does, in pixels of the same size. A
-   *  smaller viewport of the same shape samples more coarsely. */
+  /** The viewport for the first camera, in pixels: it sees more than the viewer does, in pixels of the same size where
+   *  that takes at most twice as many. */
   uint32_t width, height;
-  float middle[3], extent[3]; /**< The box in which the eyes stay: its middle, and from there to its sides. */
-  float turn, tilt;           /**< Radians to either side; less than asked for beyond a field of view of 160 degrees. */
-  /** Largest distance from a place in the box to its nearest camera, for GpgpVisibilityInfo::reach. 0: the middle
-   *  alone. */
-  float reach;
+  uint32_t cornerWidth, cornerHeight; /**< The viewport for the other cameras, for method exact. */
+  float middle[3], extent[3];         /**< The box in which the eyes stay: its middle, and from there to its sides. */
+  float turn, tilt; /**< Radians to either side; less than asked for beyond a field of view of 160 degrees. */
+  float reach;      /**< No place in the box is farther from its nearest camera. 0: one camera stands for all. */
 } GpgpViewMotionCoverage;
 
-/** Makes the cameras of a viewer in motion: in the middle of the places where the eyes may be, then at their corners,
- *  with a field of view that holds every view from there. They are for one recording with several cameras, or for
- *  several recordings that accumulate.
- *  - count: in, the capacity of cameras; out, the number of all cameras, at most 9. If that exceeds the capacity, the
+/** Makes the cameras of a viewer in motion: in the middle of the box in which the eyes stay, then in two opposite
+ *  corners, with a field of view that holds every view from there. They are for recordings that accumulate, the first
+ *  one in its own viewport.
+ *  - count: in, the capacity of cameras; out, the number of all cameras: 1 or 3. If that exceeds the capacity, the
  *    result is INCOMPLETE, and the first cameras are written.
  *  - cameras, coverage: may be NULL.
  *  Errors: INVALID_ARGUMENT, INVALID_STRUCT. @threads any @lifetime call */

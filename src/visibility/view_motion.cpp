@@ -11,7 +11,8 @@ namespace gpgp::visibility {
 namespace {
 using core::makeError;
 constexpr float kMostTangent = 5.67f; // of 80 degrees to each side
-constexpr float kSame = 1e-6f;        // of the largest extent: no extent
+constexpr float kMostPixels = 2;      // for one of the viewer's
+constexpr uint32_t kCoarser = 4;      // how many times smaller corners are sampled
 
 /// What a camera shows, on the plane one unit before it: x and y of the picture's sides, in the order of clip space.
 struct Window {
@@ -38,22 +39,6 @@ bool turned(const Window& window, float turn, float tilt, Window& all) {
     }
   }
   return true;
-}
-
-/// The largest distance of a place in a box to the nearest of its middle and its corners.
-float farthest(const std::array<float, 3>& extent) {
-  // In an eighth of the box it lies where the plane halfway between middle and corner meets an edge.
-  float square = 0, most = 0;
-  for (const float e : extent) square += e * e;
-  for (size_t axis = 0; axis < 3; ++axis)
-    for (int edge = 0; edge < 4; ++edge) {
-      const size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
-      const float pb = edge & 1 ? extent[b] : 0, pc = edge & 2 ? extent[c] : 0;
-      if (extent[axis] <= 0) continue;
-      const float along = (0.5f * square - pb * extent[b] - pc * extent[c]) / extent[axis];
-      if (along >= 0 && along <= extent[axis]) most = std::max(most, along * along + pb * pb + pc * pc);
-    }
-  return std::sqrt(most);
 }
 
 bool within(float value, float most) { return value >= 0 && value <= most; }
@@ -112,17 +97,22 @@ core::Result<GpgpViewMotionCoverage> viewMotionCameras(const GpgpViewMotionInfo&
   coverage.turn = turn * share;
   coverage.tilt = tilt * share;
   GpgpCamera wide = info.camera;
-  uint32_t* const sizes[2] = {&coverage.width, &coverage.height};
+  float spreads[2];
   for (int axis = 0; axis < 2; ++axis) {
-    const float spread = (wider.high[axis] - wider.low[axis]) / (window.high[axis] - window.low[axis]);
+    const float spread = spreads[axis] = (wider.high[axis] - wider.low[axis]) / (window.high[axis] - window.low[axis]);
     const float scale = 1 / spread, to = -(wider.high[axis] + wider.low[axis]) / (wider.high[axis] - wider.low[axis]);
     for (int column = 0; column < 4; ++column) {
       float* m = wide.viewProjection + column * 4;
       m[axis] = m[axis] * scale + m[3] * (to - middle[axis] * scale);
     }
-    *sizes[axis] =
-        static_cast<uint32_t>(std::ceil(spread * static_cast<float>(axis ? info.height : info.width) * (1 - kSame)));
   }
+  // Pixels near the sides of a wide picture are finer than they need be: twice the viewer's are enough.
+  const float scale = std::min(1.0f, std::sqrt(kMostPixels / (spreads[0] * spreads[1])));
+  const auto pixels = [](float exact) { return static_cast<uint32_t>(std::ceil(exact * (1 - 1e-6f))); };
+  coverage.width = pixels(static_cast<float>(info.width) * spreads[0] * scale);
+  coverage.height = pixels(static_cast<float>(info.height) * spreads[1] * scale);
+  coverage.cornerWidth = (coverage.width + kCoarser - 1) / kCoarser;
+  coverage.cornerHeight = (coverage.height + kCoarser - 1) / kCoarser;
 
   // The eyes at any time: a piece of the way, a ball around it, to each side half the distance of the eyes.
   const glm::vec3 velocity(info.velocity[0], info.velocity[1], info.velocity[2]);
@@ -136,23 +126,18 @@ core::Result<GpgpViewMotionCoverage> viewMotionCameras(const GpgpViewMotionInfo&
     coverage.middle[axis] = glm::dot(centre, directions[axis]);
     coverage.extent[axis] = extent[axis] = std::abs(glm::dot(way, directions[axis])) + ball + beside[axis];
   }
-  const float largest = *std::max_element(extent.begin(), extent.end());
-  coverage.reach = farthest(extent);
-  // The middle and the corners; where the box has no extent, fewer.
+  // The middle and two opposite corners: more of them find hardly more. Where the box is a line these are its ends.
+  const glm::vec3 corner = axes.right * extent[0] + axes.up * extent[1] + axes.back * extent[2];
+  const auto sides = std::count_if(extent.begin(), extent.end(), [](float e) { return e > 0; });
+  coverage.reach = glm::length(corner) * (sides == 1 ? 0.5f : 1.0f);
   const auto add = [&](const glm::vec3& at) {
     if (cameras && coverage.cameraCount < room) cameras[coverage.cameraCount] = moved(wide, at);
     ++coverage.cameraCount;
   };
   add(centre);
-  for (uint32_t corner = 0; corner < 8 && largest > 0; ++corner) {
-    glm::vec3 at = centre;
-    bool again = false; // another corner is the same place
-    for (uint32_t axis = 0; axis < 3; ++axis) {
-      const bool has = extent[axis] > largest * kSame, high = (corner >> axis & 1) != 0;
-      again = again || (!has && high);
-      if (has) at += directions[axis] * (high ? extent[axis] : -extent[axis]);
-    }
-    if (!again) add(at);
+  if (sides > 0) {
+    add(centre - corner);
+    add(centre + corner);
   }
   return coverage;
 }

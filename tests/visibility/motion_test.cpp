@@ -28,7 +28,7 @@ GpgpViewMotionInfo infoOf(const glm::mat4& projection, const glm::mat4& view) {
 
 Cameras camerasOf(const GpgpViewMotionInfo& info) {
   Cameras result;
-  uint32_t count = 9;
+  uint32_t count = 3;
   std::vector<GpgpCamera> cameras(count);
   EXPECT_EQ(gpgpGetViewMotionCameras(&info, &count, cameras.data(), &result.coverage), GPGP_SUCCESS);
   EXPECT_EQ(count, result.coverage.cameraCount);
@@ -78,12 +78,12 @@ TEST(ViewMotion, WhoStandsStillHasTheOneCamera) {
 TEST(ViewMotion, TheFrustumHoldsEveryTurnAndNoMore) {
   GpgpViewMotionInfo info = infoOf(kProjection, kView);
   info.latest = 0.2f;
-  info.turnRate = 1.4f;
-  info.tiltRate = 0.6f;
+  info.turnRate = 0.5f;
+  info.tiltRate = 0.2f;
   const Cameras made = camerasOf(info);
   ASSERT_EQ(made.matrices.size(), 1u);
-  EXPECT_NEAR(made.coverage.turn, 0.28f, 1e-6f);
-  EXPECT_NEAR(made.coverage.tilt, 0.12f, 1e-6f);
+  EXPECT_NEAR(made.coverage.turn, 0.1f, 1e-6f);
+  EXPECT_NEAR(made.coverage.tilt, 0.04f, 1e-6f);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> either(-1, 1);
   glm::dvec2 low(1), high(-1);
@@ -91,8 +91,8 @@ TEST(ViewMotion, TheFrustumHoldsEveryTurnAndNoMore) {
     const bool extreme = i % 2 != 0;
     const auto of = [&](double most) { return most * (extreme ? (either(random) < 0 ? -1 : 1) : either(random)); };
     // A viewer's pixel, through the head's turn and tilt, to a point of the world.
-    const glm::dmat4 head = glm::rotate(glm::dmat4(1), of(0.28), glm::dvec3(0, 1, 0)) *
-                            glm::rotate(glm::dmat4(1), of(0.12), glm::dvec3(1, 0, 0));
+    const glm::dmat4 head = glm::rotate(glm::dmat4(1), of(0.1), glm::dvec3(0, 1, 0)) *
+                            glm::rotate(glm::dmat4(1), of(0.04), glm::dvec3(1, 0, 0));
     const glm::dvec4 pixel = glm::inverse(glm::dmat4(kProjection)) * glm::dvec4(of(1), of(1), 0.5, 1);
     const glm::dvec4 world = glm::inverse(glm::dmat4(kView)) * (head * (pixel / pixel.w));
     const glm::dvec4 seen = made.matrices[0] * world;
@@ -131,18 +131,14 @@ TEST(ViewMotion, EveryEyeStaysInTheBoxWhoseCornersHaveCameras) {
   info.latest = 0.25f;
   info.eyeDistance = 0.064f;
   const Cameras made = camerasOf(info);
-  ASSERT_EQ(made.matrices.size(), 9u);
+  ASSERT_EQ(made.matrices.size(), 3u);
   const auto place = [&](const glm::dvec3& world) { // right, up, back of the pose
     const glm::dvec3 offset = world - glm::dvec3(kEye);
     return glm::dvec3(glm::dot(offset, axisOf(0)), glm::dot(offset, axisOf(1)), glm::dot(offset, axisOf(2)));
   };
   const glm::dvec3 middle(glm::make_vec3(made.coverage.middle)), extent(glm::make_vec3(made.coverage.extent));
-  for (uint32_t corner = 0; corner < 9; ++corner) {
-    glm::dvec3 expected = middle;
-    for (int axis = 0; corner > 0 && axis < 3; ++axis)
-      expected[axis] += extent[axis] * ((corner - 1) >> axis & 1 ? 1 : -1);
-    EXPECT_LT(glm::length(place(eyeOf(made.matrices[corner])) - expected), 2e-3) << corner;
-  }
+  const glm::dvec3 expected[3] = {middle, middle - extent, middle + extent};
+  for (size_t i = 0; i < 3; ++i) EXPECT_LT(glm::length(place(eyeOf(made.matrices[i])) - expected[i]), 2e-3) << i;
   std::mt19937 random(8);
   std::uniform_real_distribution<double> share(0, 1);
   glm::dvec3 most(0);
@@ -159,14 +155,13 @@ TEST(ViewMotion, EveryEyeStaysInTheBoxWhoseCornersHaveCameras) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_GT(most[axis], 0.8) << "the box is not much larger than it must be";
 }
 
-TEST(ViewMotion, ReachIsTheLargestDistanceToACamera) {
+TEST(ViewMotion, NoPlaceIsFartherFromACameraThanReach) {
   for (const glm::vec3 velocity : {glm::vec3(0, 0, -5), glm::vec3(4, 0, -5), glm::vec3(1, 2, -9)}) {
     GpgpViewMotionInfo info = infoOf(kProjection, glm::mat4(1));
     std::copy_n(glm::value_ptr(velocity), 3, info.velocity);
     info.latest = 0.3f;
     const Cameras made = camerasOf(info);
-    const int axes = (velocity.x != 0) + (velocity.y != 0) + (velocity.z != 0);
-    EXPECT_EQ(made.matrices.size(), 1u + (1u << axes));
+    EXPECT_EQ(made.matrices.size(), 3u);
     std::vector<glm::dvec3> eyes;
     for (const glm::dmat4& matrix : made.matrices) eyes.push_back(eyeOf(matrix));
     const glm::dvec3 middle(glm::make_vec3(made.coverage.middle)), extent(glm::make_vec3(made.coverage.extent));
@@ -180,7 +175,7 @@ TEST(ViewMotion, ReachIsTheLargestDistanceToACamera) {
       most = std::max(most, nearest);
     }
     EXPECT_LE(most, static_cast<double>(made.coverage.reach) + 1e-3);
-    EXPECT_GE(most, 0.95 * static_cast<double>(made.coverage.reach));
+    EXPECT_GE(most, 0.25 * static_cast<double>(made.coverage.reach));
   }
 }
 
@@ -191,7 +186,11 @@ TEST(ViewMotion, TurnsBeyondWhatOneFrustumHoldsAreCutAndSaidSo) {
   const Cameras made = camerasOf(info);
   EXPECT_LT(made.coverage.turn, 1.2f);
   EXPECT_GT(made.coverage.turn, 0.2f);
-  EXPECT_LT(made.coverage.width, 16384u);
+  // What is wide has at most twice the viewer's pixels.
+  const double pixels = static_cast<double>(made.coverage.width) * made.coverage.height;
+  EXPECT_LE(pixels, 2.01 * 1920 * 1080);
+  EXPECT_GE(pixels, 1.99 * 1920 * 1080);
+  EXPECT_EQ(made.coverage.cornerWidth, (made.coverage.width + 3) / 4);
 }
 
 TEST(ViewMotion, ArgumentsAreChecked) {

@@ -14,7 +14,7 @@
 
 namespace gpgp::cli {
 namespace {
-constexpr uint32_t kMostCameras = 9;
+constexpr uint32_t kMostCameras = 3;
 
 struct Axes {
   glm::vec3 right, up, forward;
@@ -61,7 +61,6 @@ MotionCell::MotionCell(const Motion& motion, const View& view, Size viewport) {
     throw Failure(std::string("--motion: ") + gpgpResultString(result) +
                   ": the camera is no perspective one, or the viewer turns by more than 90 degrees");
   for (uint32_t i = 0; i < count; ++i) views.push_back({glm::make_mat4(cameras[i].viewProjection), view.reversed});
-  size = {coverage.width, coverage.height};
 }
 
 View MotionCell::viewer(uint32_t k) const {
@@ -115,7 +114,7 @@ MotionFigures measureMotion(SampledModel& scene, VisibilityRecorder& recorder, c
                             const std::vector<uint32_t>& found) {
   MotionFigures figures;
   figures.cameras = static_cast<uint32_t>(cell.views.size());
-  figures.size = cell.size;
+  figures.size = cell.sizeOf(0);
   SampledModel::Step step;
   step.method = options.sampling();
   step.view = view;

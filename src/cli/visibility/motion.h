@@ -11,9 +11,11 @@ struct MotionCell {
   GpgpViewMotionInfo info = GPGP_VIEW_MOTION_INFO_INIT;
   GpgpViewMotionCoverage coverage{};
   std::vector<View> views;
-  Size size;
 
   MotionCell(const Motion& motion, const View& view, Size viewport);
+  Size sizeOf(size_t view) const {
+    return view ? Size{coverage.cornerWidth, coverage.cornerHeight} : Size{coverage.width, coverage.height};
+  }
   /// An eye of the moving viewer, at some time: the first are at the ends of the walk, fully turned.
   View viewer(uint32_t k) const;
 };

@@ -159,7 +159,8 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
   Size largest = options.size;
   for (uint32_t k = 0; k < cameras && options.motion; ++k) {
     motions[k].emplace(*options.motion, viewOf(options, bounds, k), options.size);
-    largest = {std::max(largest.width, motions[k]->size.width), std::max(largest.height, motions[k]->size.height)};
+    const Size wide = motions[k]->sizeOf(0);
+    largest = {std::max(largest.width, wide.width), std::max(largest.height, wide.height)};
   }
   VisibilityRecorder recorder = scene.recorder(method, method == GPGP_SAMPLING_STANDARD ? options.samples : 1, largest);
   Figures figures;
@@ -183,7 +184,7 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
       SampledModel::Step step;
       step.method = method;
       step.view = views[v];
-      if (motion) step.size = motion->size;
+      if (motion) step.size = motion->sizeOf(v);
       step.samples = options.samples;
       if (k == 0 && v == 0) scene.sample(recorder, step); // not counted: pipelines and memory are used the first time
       step.repeat = options.repeat;
