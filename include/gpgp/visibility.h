@@ -219,6 +219,44 @@ typedef struct GpgpViewCellInfo {
 GPGP_API GpgpResult GPGP_CALL gpgpGetViewCellCameras(const GpgpViewCellInfo* info, uint32_t* count,
                                                      GpgpCamera* cameras);
 
+/** How a viewer may walk and turn from the pose that a result is made for until it is no longer displayed. */
+typedef struct GpgpViewMotionInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  GpgpCamera camera;      /**< Of the pose; perspective. Of two eyes, the one halfway between them. */
+  uint32_t width, height; /**< The viewer's viewport in pixels, at most 16384 each. */
+  float velocity[3];      /**< At the pose, in world units per second along the world's axes. */
+  float acceleration;     /**< By which the velocity may change, in any direction; world units per second squared. */
+  float turnRate;         /**< Turns about the camera's up axis, to either side; radians per second at most. */
+  float tiltRate;         /**< Turns about its right axis, up or down; radians per second at most. */
+  float earliest, latest; /**< When the result is displayed, in seconds after the pose; 0 to 10. */
+  float eyeDistance;      /**< Distance of two eyes in world units; 0: one eye. */
+} GpgpViewMotionInfo;
+#define GPGP_VIEW_MOTION_INFO_INIT GPGP_INIT(GpgpViewMotionInfo, GPGP_STRUCTURE_VIEW_MOTION_INFO)
+
+/** What the cameras of a motion cover. Positions are relative to the camera of the pose, in world units to its right,
+ *  up, and back towards the viewer. */
+typedef struct GpgpViewMotionCoverage {
+  uint32_t cameraCount;
+  /** The viewport for the first camera, in pixels: it sees more than the viewer does, in pixels of the same size where
+   *  that takes at most twice as many. */
+  uint32_t width, height;
+  uint32_t cornerWidth, cornerHeight; /**< The viewport for the other cameras, for method exact. */
+  float middle[3], extent[3];         /**< The box in which the eyes stay: its middle, and from there to its sides. */
+  float turn, tilt; /**< Radians to either side; less than asked for beyond a field of view of 160 degrees. */
+  float reach;      /**< No place in the box is farther from its nearest camera. 0: one camera stands for all. */
+} GpgpViewMotionCoverage;
+
+/** Makes the cameras of a viewer in motion: in the middle of the box in which the eyes stay, then in two opposite
+ *  corners, with a field of view that holds every view from there. They are for recordings that accumulate, the first
+ *  one in its own viewport.
+ *  - count: in, the capacity of cameras; out, the number of all cameras: 1 or 3. If that exceeds the capacity, the
+ *    result is INCOMPLETE, and the first cameras are written.
+ *  - cameras, coverage: may be NULL.
+ *  Errors: INVALID_ARGUMENT, INVALID_STRUCT. @threads any @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpGetViewMotionCameras(const GpgpViewMotionInfo* info, uint32_t* count,
+                                                       GpgpCamera* cameras, GpgpViewMotionCoverage* coverage);
+
 /* ---------------------------------------------------------------- recording */
 
 /** Projected size of a triangle. It covers the part between near and far plane that lies within three viewports to each

@@ -16,7 +16,7 @@
 namespace mini {
 namespace {
 
-constexpr uint32_t kMaxInstances = 400000;
+constexpr uint32_t kMaxInstances = 262144;
 constexpr uint32_t kMaxBuckets = 1024; // as many as a grammar can have: the next one may have more than the first
 
 /// What a terminal is made of, by its name; names that are not known get a colour each.
@@ -70,7 +70,11 @@ City::City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string
   auto spawnerInfo = gpgp::init<GpgpSpawnerCreateInfo>();
   spawnerInfo.base = gpgp.recorder("city spawner");
   spawnerInfo.flags = GPGP_SPAWNER_ORDERED; // where faces coincide, the picture is the same in every run
+  // Budgets as the reports say they are needed, and twice as much: the defaults are for ten times this city.
+  spawnerInfo.maxShapes = 16384;
+  spawnerInfo.maxTerminals = kMaxInstances;
   spawner_ = gpgp.take(gpgp::Spawner::create(gpgp.context, spawnerInfo), "gpgpCreateSpawner");
+  gpgp.shareScratch(spawner_);
   gpgp.check(spawner_.prewarm(), "gpgpPrewarm");
   makeMaterials();
   if (watch) {
@@ -135,6 +139,7 @@ void City::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
   }
   auto info = gpgp::init<GpgpSpawnInfo>();
   info.base.tag = frame.current;
+  info.base.scratch = gpgp_.scratch();
   info.grammar = grammar_;
   info.axioms = axioms_.forGpgp(kNoAccess, kNoAccess);
   info.axiomCount = axiomCount_;

@@ -69,6 +69,7 @@ Decoupled::Decoupled(Device& device, Gpgp& gpgp, const Forward& forward, Model m
                          GPGP_SAMPLING_REFERENCE_BIT;
   recorderInfo.maxSamples = kReferencePerRecord;
   recorder_ = gpgp.take(gpgp::VisibilityRecorder::create(gpgp.context, recorderInfo), "gpgpCreateVisibilityRecorder");
+  gpgp.shareScratch(recorder_);
   gpgp.check(recorder_.prewarm(), "gpgpPrewarm");
   PipelineInfo info;
   info.vertex.assign(std::begin(mini_shaded_vert), std::end(mini_shaded_vert));
@@ -120,6 +121,7 @@ void Decoupled::sample(VkCommandBuffer commands, const GpgpFrame& frame, GpgpSam
                        const Camera& camera, VkExtent2D extent, const Buffer& bits, Tag tag, uint32_t slice) {
   auto info = gpgp::init<GpgpVisibilityInfo>();
   info.base.tag = tag;
+  info.base.scratch = gpgp_.scratch();
   info.geometrySet = geometry_;
   info.method = method;
   std::copy_n(glm::value_ptr(camera.viewProjection), 16, info.camera.viewProjection);
@@ -155,6 +157,7 @@ void Decoupled::sample(VkCommandBuffer commands, const GpgpFrame& frame, GpgpSam
 void Decoupled::compare(VkCommandBuffer commands, const GpgpFrame& frame, const Buffer& reference, Tag tag) {
   auto info = gpgp::init<GpgpVisibilityMetricsInfo>();
   info.base.tag = tag;
+  info.base.scratch = gpgp_.scratch();
   info.triangleCount = model_.triangleCount;
   info.visibleBits = found_.forGpgp(kVertexShaderRead, kVertexShaderRead);
   info.referenceBits = reference.forGpgp(kNoAccess, kNoAccess);

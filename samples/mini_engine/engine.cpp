@@ -250,8 +250,9 @@ void Engine::printSummary() const {
               sight_.model().triangleCount, sight_.model().name.c_str(), sample.coveredPixels, sample.appeared,
               sample.disappeared);
   if (screen_) screen_->printSummary();
-  std::printf("memory      gpgp holds %.1f MiB in %u allocations of the engine's\n",
-              static_cast<double>(gpgp_.memory.bytes()) / 1048576.0, gpgp_.memory.allocations());
+  const double held = static_cast<double>(gpgp_.memory.bytes()), shared = static_cast<double>(gpgp_.scratchBytes());
+  std::printf("memory      gpgp has %.1f MiB: %.1f in %u allocations, and %.1f of scratch that its recorders share\n",
+              (held + shared) / 1048576.0, held / 1048576.0, gpgp_.memory.allocations(), shared / 1048576.0);
 }
 
 } // namespace mini

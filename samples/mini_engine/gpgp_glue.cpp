@@ -1,6 +1,7 @@
 // The engine's side of the contract: memory, messages, files.
 #include "gpgp_glue.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -95,7 +96,19 @@ GpgpRecorderCreateInfo Gpgp::recorder(const char* label) const {
   info.label = label;
   info.queueFamily = device_.family;
   info.queueFlags = device_.queueFlags;
+  info.engineScratch = VK_TRUE;
   return info;
+}
+
+void Gpgp::shareScratch(const gpgp::Recorder& recorder) {
+  const gpgp::ScratchSize needs = take(recorder.scratchSize(), "gpgpGetScratchSize");
+  scratchSize_.size = std::max(scratchSize_.size, needs.size);
+  scratchSize_.usage |= needs.usage;
+}
+
+GpgpBuffer Gpgp::scratch() {
+  if (!scratch_.handle) scratch_ = Buffer(device_, scratchSize_.size, scratchSize_.usage);
+  return scratch_.forGpgp(kNoAccess, kNoAccess);
 }
 
 gpgp::Drawing Gpgp::loadSvg(const std::string& file, const char* label) {

@@ -50,6 +50,11 @@ public:
     return std::move(*result);
   }
   GpgpRecorderCreateInfo recorder(const char* label) const;
+  /// Recordings of a frame run one after another, so all recorders share one scratch buffer, as large as the largest
+  /// needs. Every recorder is announced before the first recording.
+  void shareScratch(const gpgp::Recorder& recorder);
+  GpgpBuffer scratch();
+  VkDeviceSize scratchBytes() const { return scratchSize_.size; }
   /// Compiles an SVG; where the file is not there, says so and gives nothing.
   gpgp::Drawing loadSvg(const std::string& file, const char* label);
   gpgp::GeometrySet geometrySet(const char* label, const std::vector<GpgpMesh>& meshes);
@@ -62,6 +67,8 @@ private:
   static void GPGP_CALL onMessage(void* user, const GpgpMessage* message);
   Device& device_;
   std::string lastError_;
+  gpgp::ScratchSize scratchSize_{};
+  Buffer scratch_;
 };
 
 /// The engine's uses of buffers that gpgp fills.

@@ -31,8 +31,11 @@ Hud::Hud(Device&, Gpgp& gpgp, const Forward& forward, const std::string& frameFi
   info.base = gpgp.recorder("hud canvas");
   info.maxWidth = kMaxExtent.width;
   info.maxHeight = kMaxExtent.height;
+  info.maxPaths = 8192;
+  info.maxTileEntries = 32768;
   info.targets = GPGP_CANVAS_TARGET_HISTORY;
   canvas_ = gpgp.take(gpgp::Canvas::create(gpgp.context, info), "gpgpCreateCanvas");
+  gpgp.shareScratch(canvas_);
   target_ = gpgp::init<GpgpTargetInfo>();
   target_.renderPass = forward.renderPass();
   target_.samples = Forward::kSamples;
@@ -79,6 +82,7 @@ void Hud::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
   }
   auto info = gpgp::init<GpgpCanvasInfo>();
   info.base.tag = frame.current;
+  info.base.scratch = gpgp_.scratch();
   info.width = extent_.width;
   info.height = extent_.height;
   info.items = items.data();

@@ -37,8 +37,11 @@ Screen::Screen(Device& device, Gpgp& gpgp, const Forward& forward, const std::st
   info.maxWidth = kMaxExtent.width;
   info.maxHeight = kMaxExtent.height;
   info.maxGlyphs = 2048;
+  info.maxPaths = 8192;
+  info.maxTileEntries = 32768;
   info.targets = GPGP_CANVAS_TARGET_HISTORY;
   canvas_ = gpgp.take(gpgp::Canvas::create(gpgp.context, info), "gpgpCreateCanvas");
+  gpgp.shareScratch(canvas_);
   for (Layer* layer : {&world_, &front_}) {
     auto list = gpgp::init<GpgpListCreateInfo>();
     list.label = layer == &world_ ? "inventory" : "screen";
@@ -169,6 +172,7 @@ void Screen::record(VkCommandBuffer commands, const GpgpFrame& frame, Layer& lay
   if (!layer.shown) return;
   auto info = gpgp::init<GpgpCanvasInfo>();
   info.base.tag = &layer == &world_ ? tagWorld : tagFront;
+  info.base.scratch = gpgp_.scratch();
   info.width = extent_.width * layer.parts;
   info.height = extent_.height;
   info.items = layer.items;

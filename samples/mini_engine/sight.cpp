@@ -31,6 +31,7 @@ Sight::Sight(Device& device, Gpgp& gpgp, const Forward& forward, Model model) : 
   recorderInfo.maxDraws = static_cast<uint32_t>(model_.draws.size());
   recorderInfo.maxTriangles = model_.triangleCount;
   recorder_ = gpgp.take(gpgp::VisibilityRecorder::create(gpgp.context, recorderInfo), "gpgpCreateVisibilityRecorder");
+  gpgp.shareScratch(recorder_);
   gpgp.check(recorder_.prewarm(), "gpgpPrewarm");
   auto viewInfo = gpgp::init<GpgpCameraHistoryCreateInfo>();
   viewInfo.label = "main camera";
@@ -51,6 +52,7 @@ Sight::Sight(Device& device, Gpgp& gpgp, const Forward& forward, Model model) : 
 void Sight::prepare(VkCommandBuffer commands, const GpgpFrame& frame, const Camera& camera, VkExtent2D extent) {
   auto info = gpgp::init<GpgpVisibilityInfo>();
   info.base.tag = frame.current;
+  info.base.scratch = gpgp_.scratch();
   info.geometrySet = geometry_;
   info.history = view_;
   info.method = GPGP_SAMPLING_STANDARD;

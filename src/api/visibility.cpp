@@ -3,6 +3,7 @@
 #include "visibility/sampling/recorder.h"
 #include "visibility/triangle_order.h"
 #include "visibility/view_cell.h"
+#include "visibility/view_motion.h"
 
 #include <algorithm>
 #include <iterator>
@@ -118,6 +119,23 @@ GpgpResult GPGP_CALL gpgpGetViewCellCameras(const GpgpViewCellInfo* info, uint32
     if (!made) return made.error();
     *count = *made;
     if (cameras && *made > room) return makeError(GPGP_INCOMPLETE, "cameras is too small");
+    return {};
+  });
+}
+
+GpgpResult GPGP_CALL gpgpGetViewMotionCameras(const GpgpViewMotionInfo* info, uint32_t* count, GpgpCamera* cameras,
+                                              GpgpViewMotionCoverage* coverage) {
+  return guarded("gpgpGetViewMotionCameras", [&](Call&) -> Result<void> {
+    if (auto ok = checkStruct(info, GPGP_STRUCTURE_VIEW_MOTION_INFO, "info"); !ok) return ok;
+    if (!count) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "count is NULL");
+    if (!allFinite(info->camera.viewProjection))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera.viewProjection holds a number that is not finite");
+    const uint32_t room = cameras ? *count : 0;
+    const auto made = viewMotionCameras(*info, room, cameras);
+    if (!made) return made.error();
+    *count = made->cameraCount;
+    if (coverage) *coverage = *made;
+    if (cameras && *count > room) return makeError(GPGP_INCOMPLETE, "cameras is too small");
     return {};
   });
 }

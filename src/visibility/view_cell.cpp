@@ -1,8 +1,7 @@
-// Moves a camera across its own view: its axes come from the matrix' rows, so that any projection will do.
+// Moves a camera across its own view.
 #include "visibility/view_cell.h"
 
-#include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
+#include "visibility/camera_axes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,17 +12,6 @@ using core::makeError;
 constexpr uint32_t kMaxSide = 64, kMaxWalk = 1024;
 constexpr float kPi = 3.14159265f, kGolden = 0.618033989f;
 
-glm::vec3 rowOf(const GpgpCamera& camera, int row) {
-  const float* m = camera.viewProjection + row;
-  return {m[0], m[4], m[8]};
-}
-
-/// The camera at another place, looking the same way.
-GpgpCamera moved(const GpgpCamera& camera, const glm::vec3& by) {
-  GpgpCamera result = camera;
-  for (int row = 0; row < 4; ++row) result.viewProjection[12 + row] -= glm::dot(rowOf(camera, row), by);
-  return result;
-}
 } // namespace
 
 glm::vec4 depthScale(const GpgpCamera& camera, uint32_t width, uint32_t height, float reach) {
@@ -54,17 +42,8 @@ core::Result<uint32_t> viewCellCameras(const GpgpViewCellInfo& info, uint32_t ro
                      info.walkCount, static_cast<double>(info.walkDistance), kMaxWalk);
   if (info.pointCount && !info.points)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "points is NULL, but pointCount is %u", info.pointCount);
-  const glm::vec3 w = rowOf(info.camera, 3), depth = rowOf(info.camera, 2);
-  const bool perspective = glm::dot(w, w) > 0;
-  const glm::vec3 forward = perspective ? w : info.camera.reversedDepth ? -depth : depth;
-  const glm::vec3 back = -glm::normalize(forward);
-  // What an off-centre projection adds along the view is no part of the axes.
-  const auto across = [&](int row) {
-    const glm::vec3 axis = rowOf(info.camera, row);
-    return axis - back * glm::dot(axis, back);
-  };
-  const glm::vec3 x = across(0), y = across(1);
-  const glm::vec3 right = glm::normalize(x), up = -glm::normalize(y);
+  const CameraAxes axes(info.camera);
+  const auto& [perspective, x, y, right, up, back] = axes;
   if (!std::isfinite(glm::dot(right, up) + back.x))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera.viewProjection has no direction across or along the view");
 

@@ -57,6 +57,7 @@ GpgpStructureType useEveryStruct(void) {
   GPGP_USE(GpgpVisibilityInfo, GPGP_VISIBILITY_INFO_INIT);
   GPGP_USE(GpgpVisibilityReport, GPGP_VISIBILITY_REPORT_INIT);
   GPGP_USE(GpgpViewCellInfo, GPGP_VIEW_CELL_INFO_INIT);
+  GPGP_USE(GpgpViewMotionInfo, GPGP_VIEW_MOTION_INFO_INIT);
   GPGP_USE(GpgpVisibilityMetricsInfo, GPGP_VISIBILITY_METRICS_INFO_INIT);
   GPGP_USE(GpgpAtlasCreateInfo, GPGP_ATLAS_CREATE_INFO_INIT);
   GPGP_USE(GpgpAtlasRecorderCreateInfo, GPGP_ATLAS_RECORDER_CREATE_INFO_INIT);

@@ -4,21 +4,7 @@
 
 #include <glm/glm.hpp>
 
-#include <optional>
-
 namespace gpgp::cli {
-namespace {
-
-/// Where a camera's x, y and w are all 0.
-std::optional<glm::dvec3> eyeOf(const View& view) {
-  const glm::dmat4 rows = glm::transpose(glm::dmat4(view.camera));
-  const glm::dmat3 normals = glm::transpose(glm::dmat3(rows[0], rows[1], rows[3]));
-  if (glm::length(glm::dvec3(rows[3])) == 0 || glm::determinant(normals) == 0) return std::nullopt;
-  return glm::inverse(normals) * -glm::dvec3(rows[0].w, rows[1].w, rows[3].w);
-}
-
-} // namespace
-
 uint32_t leaveOutBehindWalls(std::vector<View>& views, const Model& model) {
   std::vector<glm::dvec3> eyes;
   for (const View& view : views) {

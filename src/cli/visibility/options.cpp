@@ -119,6 +119,22 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
       .add_flag("--through-walls", options.throughWalls,
                 "View points of the cell count even where a triangle lies between them and its middle")
       ->needs(cell);
+  CLI::Option* motion =
+      command
+          .add_option_function<std::string>(
+              "--motion", [&options](const std::string& text) { options.motion = Motion::parse(text); },
+              "What a viewer may see who walks and turns meanwhile: world units per second along the view, degrees per "
+              "second, and milliseconds until the result is no longer shown; gpgp chooses the view points. --reference "
+              "compares with what viewers see at the picture's size")
+          ->type_name("SPEED,TURN,LATENCY")
+          ->excludes(cell);
+  command.add_option("--eyes", options.eyes, "With two eyes that are so far apart, in world units")
+      ->check(within(0.0, 1e6))
+      ->needs(motion);
+  command.add_option("--viewers", options.viewers, "How many viewers --reference compares a motion with")
+      ->check(CLI::Range(1u, 1024u))
+      ->capture_default_str()
+      ->needs(motion);
   CLI::Option* reference =
       command.add_option("--reference", options.reference, "Measure against N x N + 1 samples a pixel")
           ->check(CLI::IsMember({1u, 2u, 4u, 8u, 16u, 32u, 64u, 128u, 256u}));
@@ -175,6 +191,7 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
       ->needs(atlas);
   // What would have no effect is an error: who gives it expects one.
   command.callback([&options, conservative, samples, recheck] {
+    if (options.motion) options.motion->eyes = options.eyes;
     for (const CLI::Option* option : conservative)
       if (option->count() && options.method != "conservative")
         throw CLI::ValidationError(option->get_name(), "belongs to --method conservative");

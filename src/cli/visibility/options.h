@@ -2,7 +2,11 @@
 #pragma once
 #include "cli/shared/common.h"
 
+#include "cli/visibility/motion_options.h"
+
 #include <gpgp/visibility.h>
+
+#include <optional>
 
 namespace gpgp::cli {
 
@@ -17,6 +21,9 @@ struct VisibilityOptions {
   float epsilonStatic = 0.05f, epsilonDynamic = 0.05f, resolution = 1;
   Size atlas;               ///< texels; 0: none
   float texelsPerPixel = 1; ///< of the atlas
+  std::optional<Motion> motion;
+  float eyes = 0;       ///< of a motion
+  uint32_t viewers = 8; ///< that see what a motion's cameras are compared with
   bool twoSided = false;
   bool throughWalls = false; ///< view points of a cell behind geometry count as well
 

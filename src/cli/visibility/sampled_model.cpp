@@ -42,17 +42,18 @@ void SampledModel::describe(GpgpAtlasInfo& info, bool pairs) const {
   info.indices = indices_.range();
 }
 
-VisibilityRecorder SampledModel::recorder(GpgpSamplingMethod method, uint32_t maxSamples) {
+VisibilityRecorder SampledModel::recorder(GpgpSamplingMethod method, uint32_t maxSamples, Size largest) {
+  if (!largest.width) largest = options_.size;
   GpgpVisibilityRecorderCreateInfo info = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
   info.base = session_.recorderInfo("recorder");
-  info.maxWidth = options_.size.width;
-  info.maxHeight = options_.size.height;
+  info.maxWidth = largest.width;
+  info.maxHeight = largest.height;
   info.maxDraws = static_cast<uint32_t>(model_.draws.size());
   info.maxTriangles = model_.triangleCount;
   info.methods = 1u << method;
   info.maxSamples = maxSamples;
   info.maxCandidates = maxCandidates();
-  info.maxPairs = maxPairs();
+  info.maxPairs = maxPairs(largest);
   const Progress progress("making pipelines");
   VisibilityRecorder made =
       session_.take(VisibilityRecorder::create(session_.context(), info), "gpgpCreateVisibilityRecorder");
@@ -65,9 +66,9 @@ uint32_t SampledModel::maxCandidates() const {
   return static_cast<uint32_t>(std::min<uint64_t>({std::max(model_.triangleCount, 65536u), 1u << 24, range / 80}));
 }
 
-uint32_t SampledModel::maxPairs() const {
+uint32_t SampledModel::maxPairs(Size largest) const {
   const uint64_t range = session_.device().properties().limits.maxStorageBufferRange;
-  const uint64_t pixels = uint64_t{options_.size.width} * options_.size.height;
+  const uint64_t pixels = uint64_t{largest.width} * largest.height;
   return static_cast<uint32_t>(std::min<uint64_t>(pixels * 24 + (1u << 20), range / 20));
 }
 
@@ -81,8 +82,9 @@ Measured<GpgpVisibilityReport> SampledModel::sample(VisibilityRecorder& recorder
                             info.method = step.method;
                             std::copy_n(glm::value_ptr(step.view.camera), 16, info.camera.viewProjection);
                             info.camera.reversedDepth = step.view.reversed;
-                            info.width = options_.size.width;
-                            info.height = options_.size.height;
+                            const Size size = step.size.width ? step.size : options_.size;
+                            info.width = size.width;
+                            info.height = size.height;
                             info.samples = step.samples;
                             info.slice = step.slice;
                             info.accumulate = step.accumulate;

@@ -12,14 +12,16 @@ public:
   /// The options and the model must outlive it.
   SampledModel(Session& session, const VisibilityOptions& options, const Model& model);
 
-  VisibilityRecorder recorder(GpgpSamplingMethod method, uint32_t maxSamples);
+  /// largest: of its viewports; 0: the options' size.
+  VisibilityRecorder recorder(GpgpSamplingMethod method, uint32_t maxSamples, Size largest = {});
   /// Of the exact method's recorders.
   uint32_t maxCandidates() const;
-  uint32_t maxPairs() const;
+  uint32_t maxPairs(Size largest) const;
 
   struct Step {
     GpgpSamplingMethod method = GPGP_SAMPLING_STANDARD;
     View view;
+    Size size; ///< of the viewport; 0: the options'
     uint32_t samples = 0, slice = 0, repeat = 1;
     bool accumulate = false, sizes = false;
     const char* label = "sampling";

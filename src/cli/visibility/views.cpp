@@ -41,6 +41,13 @@ View readView(const std::string& file) {
   return view;
 }
 
+std::optional<glm::dvec3> eyeOf(const View& view) {
+  const glm::dmat4 rows = glm::transpose(glm::dmat4(view.camera));
+  const glm::dmat3 normals = glm::transpose(glm::dmat3(rows[0], rows[1], rows[3]));
+  if (glm::length(glm::dvec3(rows[3])) == 0 || glm::determinant(normals) == 0) return std::nullopt;
+  return glm::inverse(normals) * -glm::dvec3(rows[0].w, rows[1].w, rows[3].w);
+}
+
 Cell::Cell(const std::string& spec) {
   uint32_t columns = 0, rows = 0, skip = 1, count = 0;
   float radius = 0;

@@ -5,6 +5,8 @@
 
 #include <gpgp/visibility.h>
 
+#include <optional>
+
 namespace gpgp::cli {
 
 /// Of positions and moves, from the origin: a camera's numbers are products of two lengths.
@@ -22,6 +24,9 @@ View orbitView(const Bounds& bounds, uint32_t k, uint32_t n, float distance, Siz
 /// 16 numbers, column-major, world to clip; a 17th that is not 0: near is 1. Throws Failure where the file holds
 /// anything else, or a matrix without inverse.
 View readView(const std::string& file);
+
+/// Where a camera's x, y and w are all 0; parallel cameras have no such place.
+std::optional<glm::dvec3> eyeOf(const View& view);
 
 /// A view cell, but for its camera: COLUMNSxROWS[/SKIP] in pixels, or RADIUS:POINTS in world units, a square number of
 /// them; none: one view.

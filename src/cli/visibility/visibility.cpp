@@ -4,6 +4,7 @@
 #include "cli/visibility/atlas.h"
 #include "cli/visibility/camera_times.h"
 #include "cli/visibility/cell_walls.h"
+#include "cli/visibility/motion.h"
 #include "cli/visibility/pictures.h"
 #include "cli/visibility/reference.h"
 #include "host/files.h"
@@ -112,6 +113,7 @@ struct Figures {
   uint32_t viewPoints = 0, behindWalls = 0; ///< of all cameras' cells; these were left out
   std::vector<uint32_t> found, first;       ///< of all cameras together; of the first one
   std::optional<AtlasFigures> atlas;        ///< of the first one
+  std::optional<MotionFigures> motion;      ///< of the first one
 
   /// Metrics of one camera of `cameras`; areas of the reference's triangles, in samples.
   void addMetrics(const GpgpVisibilityReport& metrics, const std::vector<uint32_t>& areas, uint32_t cameras) {
@@ -152,18 +154,26 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
                 const Bounds& bounds, const std::vector<glm::vec3>& corners) {
   const GpgpSamplingMethod method = options.sampling();
   SampledModel scene(session, options, model);
-  VisibilityRecorder recorder = scene.recorder(method, method == GPGP_SAMPLING_STANDARD ? options.samples : 1);
+  const uint32_t cameras = options.cameras();
+  std::vector<std::optional<MotionCell>> motions(cameras);
+  Size largest = options.size;
+  for (uint32_t k = 0; k < cameras && options.motion; ++k) {
+    motions[k].emplace(*options.motion, viewOf(options, bounds, k), options.size);
+    const Size wide = motions[k]->sizeOf(0);
+    largest = {std::max(largest.width, wide.width), std::max(largest.height, wide.height)};
+  }
+  VisibilityRecorder recorder = scene.recorder(method, method == GPGP_SAMPLING_STANDARD ? options.samples : 1, largest);
   Figures figures;
   figures.maxCandidates = scene.maxCandidates();
-  figures.maxPairs = scene.maxPairs();
+  figures.maxPairs = scene.maxPairs(largest);
   std::vector<CameraTimes> times;
-  const uint32_t cameras = options.cameras();
   for (uint32_t k = 0; k < cameras; ++k) {
     const std::string label =
         "sampling" +
         (cameras > 1 ? " from camera " + std::to_string(k + 1) + " of " + std::to_string(cameras) : std::string());
     const View view = viewOf(options, bounds, k);
-    std::vector<View> views = viewsOf(cell, view, bounds.centre(), options.size.height);
+    const auto& motion = motions[k];
+    std::vector<View> views = motion ? motion->views : viewsOf(cell, view, bounds.centre(), options.size.height);
     figures.viewPoints += static_cast<uint32_t>(views.size());
     if (!options.throughWalls) figures.behindWalls += leaveOutBehindWalls(views, model);
     GpgpVisibilityReport last{};
@@ -174,6 +184,7 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
       SampledModel::Step step;
       step.method = method;
       step.view = views[v];
+      if (motion) step.size = motion->sizeOf(v);
       step.samples = options.samples;
       if (k == 0 && v == 0) scene.sample(recorder, step); // not counted: pipelines and memory are used the first time
       step.repeat = options.repeat;
@@ -187,6 +198,7 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
     progress.reset();
     const std::vector<uint32_t> found = scene.bits();
     figures.add(last, found, cameras);
+    if (k == 0 && motion) figures.motion = measureMotion(scene, recorder, options, model, *motion, view, found);
     if (k == 0 && options.atlas.width) figures.atlas = allocateAtlas(session, options, scene, model, corners, view);
 
     const bool overlay = !options.overlay.empty() && k == 0;
@@ -198,7 +210,7 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
       scene.sample(plain, step);
       standard = scene.bits();
     }
-    if (options.reference) {
+    if (options.reference && !motion) {
       const bool again = options.recheck > options.reference;
       auto [bits, areas] = referenceOf(scene, options, model, views, options.reference);
       reference = std::move(bits);
@@ -252,7 +264,8 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
          << (options.samples > 1 ? " samples covered" : " pixels covered");
   text << "; GPU " << milliseconds(figures.times.median) << " (median of " << figures.times.repeats << ") on " << device
        << '\n';
-  if (options.reference)
+  if (figures.motion) text << figures.motion->text(figures.times.median);
+  if (options.reference && !figures.motion)
     text << (options.referenceDevice == "cpu" ? "reference by rays " : "reference ") << countText(figures.reference)
          << ": coverage " << figures.coverage.text() << ", overestimation " << figures.overestimation.text()
          << "; by area " << figures.coverageArea.text() << ", " << figures.overestimationArea.text() << '\n';
@@ -296,6 +309,7 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
                   {"notes", model.notes},
                   {"gpu_ms_median", figures.times.median},
                   {"passes", figures.times.passesByName()}};
+  if (figures.motion) outcome.json["motion"] = figures.motion->json();
   if (figures.atlas) outcome.json["atlas"] = jsonOf(options, *figures.atlas);
   return outcome;
 }
