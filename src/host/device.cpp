@@ -32,11 +32,11 @@ bool hasInstanceExtension(const char* layer, const char* name) {
                      [name](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
-/// Under Wine the layer is not seen here, but works outside, where the loader of the host has been told to use it and to
-/// write its messages into a file (tests/windows.sh).
-bool isOutside(const char* layer) {
-  const char* outside = std::getenv("VK_INSTANCE_LAYERS");
-  return outside && std::strstr(outside, layer) && !hasLayer(layer);
+/// GPGP_VALIDATION=outside: the layer works where it is not seen from here. Under Wine that is in the loader of the host,
+/// which has been told to use it and to write its messages into a file (tests/windows.sh).
+bool isValidatedOutside() {
+  const char* where = std::getenv("GPGP_VALIDATION");
+  return where && std::strcmp(where, "outside") == 0;
 }
 
 /// volk's loading functions write its globals; devices may be made on many threads.
@@ -108,7 +108,7 @@ VkBool32 HeadlessDevice::onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT severi
 }
 
 void HeadlessDevice::createInstance(const DeviceOptions& options) {
-  const bool validated = options.validation && !isOutside(kValidationLayer);
+  const bool validated = options.validation && !isValidatedOutside();
   if (validated && !hasLayer(kValidationLayer))
     throw std::runtime_error(
         "the Khronos validation layer is missing (Debian: apt-get install vulkan-validationlayers)");

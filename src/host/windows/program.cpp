@@ -8,9 +8,9 @@
 
 #include <cstddef>
 #include <cstdio>
+#include <initializer_list>
 
 #define WIN32_LEAN_AND_MEAN
-#define NOMINMAX
 #include <windows.h>
 
 namespace {
