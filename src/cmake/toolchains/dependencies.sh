@@ -66,14 +66,17 @@ once() {
 }
 launcher=()
 if command -v ccache >/dev/null; then launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
-# cmakeInstall NAME SOURCE [-D...]
-cmakeInstall() {
+# cmakeConfigure NAME SOURCE [-D...], cmakeInstall with the same
+cmakeConfigure() {
   local name=$1 from=$2
   shift 2
   cmake -S "$from" -B "$work/build-$name" -G Ninja -DCMAKE_TOOLCHAIN_FILE="$here/mingw.cmake" "${launcher[@]}" \
     -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX="$prefix" -DCMAKE_INSTALL_LIBDIR=lib -DBUILD_SHARED_LIBS=OFF "$@"
-  cmake --build "$work/build-$name" --parallel "$jobs"
-  cmake --install "$work/build-$name"
+}
+cmakeInstall() {
+  cmakeConfigure "$@"
+  cmake --build "$work/build-$1" --parallel "$jobs"
+  cmake --install "$work/build-$1"
 }
 # plain NAME SOURCE: a library that plain/ compiles
 plain() { cmakeInstall "$1" "$here/plain" -DLIBRARY="$1" -DSOURCE="$2"; }
@@ -108,6 +111,15 @@ vulkanLoader() {
   x86_64-w64-mingw32-dlltool -d "$work/vulkan-1.def" -l "$prefix/lib/libvulkan-1.dll.a"
 }
 
+# Of its libraries the two that are linked: the others take as long again.
+spirvTools() {
+  cmakeConfigure spirv-tools "$work/spirv-tools" -DSPIRV-Headers_SOURCE_DIR="$work/spirv-headers/usr" \
+    -DSPIRV_SKIP_TESTS=ON -DSPIRV_SKIP_EXECUTABLES=ON -DSPIRV_WERROR=OFF
+  cmake --build "$work/build-spirv-tools" --parallel "$jobs" --target SPIRV-Tools-static SPIRV-Tools-opt
+  cp "$work"/build-spirv-tools/source/libSPIRV-Tools.a "$work"/build-spirv-tools/source/opt/libSPIRV-Tools-opt.a "$prefix/lib/"
+  cp -r "$work/spirv-tools/include/spirv-tools" "$prefix/include/"
+}
+
 base() {
   once headers headers
   once vulkan-loader vulkanLoader
@@ -128,8 +140,7 @@ compiler() {
     (cd "$work/download" && "${apt[@]}" download spirv-headers && dpkg-deb -x spirv-headers_*.deb "$work/spirv-headers") >"$work/spirv-headers.log" 2>&1 ||
       { cat "$work/spirv-headers.log" >&2; die "no package spirv-headers"; }
   fi
-  once spirv-tools cmakeInstall spirv-tools "$work/spirv-tools" -DSPIRV-Headers_SOURCE_DIR="$work/spirv-headers/usr" \
-    -DSPIRV_SKIP_TESTS=ON -DSPIRV_SKIP_EXECUTABLES=ON -DSPIRV_WERROR=OFF
+  once spirv-tools spirvTools
   unpacked glslang
   once glslang cmakeInstall glslang "$work/glslang" -DENABLE_CTEST=OFF -DENABLE_GLSLANG_BINARIES=OFF -DENABLE_OPT=OFF \
     -DENABLE_HLSL=ON
