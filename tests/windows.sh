@@ -76,7 +76,7 @@ exports() {
   for header in "$@"; do headers+=("include/gpgp/$header.h"); done
   expected=$(awk -f tests/abi/declarations.awk "${headers[@]}" | awk -F'\t' -v kind="$kind" \
     '(index($3, "In libgpgp_compiler") > 0) == (kind == "compiler") { print $1 }' | cat - <(printf 'gpgpGetVersion\ngpgpResultString\n') | LC_ALL=C sort -u)
-  found=$(x86_64-w64-mingw32-objdump -p "$library" | sed -n '/Ordinal\/Name/,/^$/s/^.*\] \([^ ]*\)$/\1/p' | LC_ALL=C sort -u)
+  found=$(x86_64-w64-mingw32-objdump -p "$library" | sed -nE '/Ordinal\/Name/,/^$/s/^\t\[.*\] (\S+)$/\1/p' | LC_ALL=C sort -u)
   [[ -n $found && $found == "$expected" ]] ||
     fail "$(basename "$library") does not export what the headers declare:"$'\n'"$(diff <(echo "$expected") <(echo "$found"))"
   echo "$(basename "$library"): $(wc -w <<<"$found") functions, $(($(stat -c %s "$library") / 1024)) KiB;" \
