@@ -58,8 +58,8 @@ shaders=${GPGP_SHADERS_FROM:-$root/build/release/generated}
 on=OFF
 [[ $all == no ]] || on=ON
 configure mingw -DGPGP_BUILD_TESTS=ON "-DGPGP_SHADERS_FROM=$shaders" -DGPGP_WITH_COMPILER=$on -DGPGP_WITH_TEXT=$on \
-  -DGPGP_BUILD_CLI=$on -DGPGP_BUILD_SAMPLES=$on -DGPGP_BUILD_INTEGRATIONS=$on
-targets=(gpgp gpgp_static paths_test core_test contract_test wrong_call)
+  -DGPGP_BUILD_SAMPLES=$on -DGPGP_BUILD_INTEGRATIONS=$on
+targets=(gpgp gpgp_static gpgp_cli paths_test core_test contract_test wrong_call)
 [[ $all == no ]] || targets=(all)
 cmake --build "$build" --parallel "$(jobCount)" --target "${targets[@]}" >"$build/build.log" 2>&1 || {
   grep -E -A 5 'error|FAILED' "$build/build.log" | head -n 60 >&2
@@ -155,8 +155,53 @@ if [[ $all == yes ]]; then
   test_ vector_cpu_reference_test 'CpuTest.*'
   test_ spawn_gpu_test '*KernelsEqualTheEvaluator*:*EqualsTheEvaluator*'
   for name in shape layout query; do test_ vector_text_${name}_test; done
-  # shellcheck source=tests/windows_pictures.sh
-  source tests/windows_pictures.sh
+fi
+
+# ---------------------------------------------------------------- beside Linux
+
+# same NAME ARGUMENT...: `gpgp ARGUMENT...` of both systems writes the same picture, byte for byte, and the same report
+# but for numbers with a fraction, times among them. {out} is where the picture goes.
+same() {
+  local name=$1 system code argument arguments
+  shift
+  for system in linux windows; do
+    arguments=()
+    for argument in "$@"; do arguments+=("${argument//\{out\}/$folder/$name.$system.png}"); done
+    code=0
+    if [[ $system == linux ]]; then
+      "$linux" "${arguments[@]}" --json >"$folder/$name.json" || code=$?
+    else
+      windows "$build/gpgp.exe" "${arguments[@]}" --json >"$folder/$name.json" || code=$?
+    fi
+    sed -E -e 's/: -?[0-9]+\.[0-9e+-]+(,?)$/: #\1/' -e "s/\.$system\.png/.png/" "$folder/$name.json" >"$folder/$name.$system.txt"
+    ((code == 0)) || fail "$name: gpgp for $system returned $code"
+  done
+  if ! cmp "$folder/$name.linux.png" "$folder/$name.windows.png"; then
+    fail "$name: other pixels than on Linux"
+  elif ! diff "$folder/$name.linux.txt" "$folder/$name.windows.txt"; then
+    fail "$name: another report than on Linux"
+  else
+    echo "passed  $name: picture and report are those of Linux"
+  fi
+}
+say "pictures and reports beside Linux"
+linux=$root/build/release/gpgp folder="$build/Pfäde δρόμος 路 🛤"
+mkdir -p "$folder"
+if [[ ! -x $linux ]]; then
+  note "left out: there is no build/release/gpgp"
+elif [[ ! -e tests/data/fetched/models/bunny.obj ]]; then
+  note "left out: tests/data/fetch.sh has not been run"
+else
+  cp tests/data/fetched/models/bunny.obj "$folder/ein Häschen 兎.obj"
+  for method in standard exact; do
+    same "visibility $method" visibility "$folder/ein Häschen 兎.obj" --method $method --size 320x180 --image "{out}"
+  done
+  if [[ $all == yes ]]; then
+    same vector vector tests/data/svg/hud.svg --size 512x512 --out "{out}"
+    same spawn spawn samples/grammars/simple_house.pga --size 320x180 --image "{out}"
+    same text text tests/data/fetched/fonts/DejaVuSans.ttf "Grüße, κόσμε" "{out}" --size 32
+    same lsystem spawn samples/lsystems/fern.lsys --size 320x180 --image "{out}"
+  fi
 fi
 
 if ((${#failures[@]})); then

@@ -32,8 +32,8 @@ bool hasInstanceExtension(const char* layer, const char* name) {
                      [name](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
-/// GPGP_VALIDATION=outside: the layer works where it is not seen from here. Under Wine that is in the loader of the host,
-/// which has been told to use it and to write its messages into a file (tests/windows.sh).
+/// GPGP_VALIDATION=outside: the layer works where it is not seen from here. Under Wine that is in the loader of the
+/// host, which has been told to use it and to write its messages into a file (tests/windows.sh).
 bool isValidatedOutside() {
   const char* where = std::getenv("GPGP_VALIDATION");
   return where && std::strcmp(where, "outside") == 0;
@@ -149,8 +149,7 @@ void HeadlessDevice::createInstance(const DeviceOptions& options) {
     volkLoadInstanceOnly(instance_); // for vkGetDeviceProcAddr, which volkLoadDeviceTable uses
     vki_ = loadInstanceTable(instance_);
   }
-  if (validated)
-    check(vki_.createDebugUtilsMessenger(instance_, &messenger, nullptr, &messenger_), "debug messenger");
+  if (validated) check(vki_.createDebugUtilsMessenger(instance_, &messenger, nullptr, &messenger_), "debug messenger");
 }
 
 void HeadlessDevice::createDevice(const DeviceOptions& options) {

@@ -30,8 +30,8 @@ const Streams streams;
 #include <cwchar>
 
 /// libstdc++ makes std::filesystem::path of char by mbrtowc in the C library's locale; msvcrt has none in UTF-8. The
-/// linker puts this one in its place (--wrap): UTF-8 to UTF-16. Of a character outside the basic plane, three bytes give
-/// the first surrogate, and the last byte gives the second, which the state holds until then.
+/// linker puts this one in its place (--wrap): UTF-8 to UTF-16. Of a character outside the basic plane, three bytes
+/// give the first surrogate, and the last byte gives the second, which the state holds until then.
 extern "C" size_t __wrap_mbrtowc(wchar_t* to, const char* from, size_t size, std::mbstate_t* state) {
   static thread_local std::mbstate_t own = 0;
   if (!state) state = &own;
@@ -47,7 +47,12 @@ extern "C" size_t __wrap_mbrtowc(wchar_t* to, const char* from, size_t size, std
     errno = EILSEQ;
     return static_cast<size_t>(-1);
   };
-  const size_t length = byte(0) < 0x80 ? 1 : byte(0) < 0xc2 ? 0 : byte(0) < 0xe0 ? 2 : byte(0) < 0xf0 ? 3 : byte(0) < 0xf5 ? 4 : 0;
+  const size_t length = byte(0) < 0x80   ? 1
+                        : byte(0) < 0xc2 ? 0
+                        : byte(0) < 0xe0 ? 2
+                        : byte(0) < 0xf0 ? 3
+                        : byte(0) < 0xf5 ? 4
+                                         : 0;
   if (length == 0) return invalid();
   unsigned long character = length == 1 ? byte(0) : byte(0) & (0x7fu >> length);
   for (size_t i = 1; i < length; ++i) {
@@ -56,7 +61,8 @@ extern "C" size_t __wrap_mbrtowc(wchar_t* to, const char* from, size_t size, std
     character = character << 6 | (byte(i) & 0x3f);
   }
   constexpr unsigned long kFirst[] = {0, 0, 0x80, 0x800, 0x10000};
-  if (character < kFirst[length] || character > 0x10ffff || (character >= 0xd800 && character < 0xe000)) return invalid();
+  if (character < kFirst[length] || character > 0x10ffff || (character >= 0xd800 && character < 0xe000))
+    return invalid();
   if (length == 4) {
     *state = static_cast<std::mbstate_t>(0xdc00 + (character & 0x3ff));
     character = 0xd7c0 + (character >> 10);
