@@ -3,8 +3,8 @@
 # host's validation layer listens; any message of it is a failure.
 #
 #   tests/windows.sh            libgpgp with all services: its exports, a consumer, and some tests; tests/run.sh does that
-#   tests/windows.sh --all      compilers, text, the command and the mini-engine, too, more tests, and pictures and
-#                               reports beside those of build/release, where that has the command
+#   tests/windows.sh --all      libgpgp_text and more tests, too
+#   tests/windows.sh --compilers  --all with libgpgp_compiler, and with it the whole command and the mini-engine
 #   tests/windows.sh --install  installs the packages that it needs: a compiler, Wine and a virtual display
 #
 #   GPGP_SHADERS_FROM=folder    generated/ of a build of these sources, whose shaders are taken (build/release's)
@@ -15,10 +15,11 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=samples/setup.sh
 source samples/setup.sh
 root=$PWD build=$PWD/build/mingw
-all=no
+all=no compilers=OFF
 for argument in "$@"; do
   case $argument in
   --all) all=yes ;;
+  --compilers) all=yes compilers=ON ;;
   --install)
     installMissing tests/windows_packages.txt
     exit 0
@@ -51,16 +52,22 @@ fail() {
 # ---------------------------------------------------------------- build
 
 say "libraries for Windows (build/mingw-dependencies)"
-if [[ $all == yes ]]; then src/cmake/toolchains/dependencies.sh all; else src/cmake/toolchains/dependencies.sh base; fi
+parts=(base)
+[[ $all == no ]] || parts+=(text)
+[[ $compilers == OFF ]] || parts+=(compiler)
+src/cmake/toolchains/dependencies.sh "${parts[@]}"
 say "build (build/mingw)"
 shaders=${GPGP_SHADERS_FROM:-$root/build/release/generated}
 [[ -d $shaders/shaders ]] || shaders=
-on=OFF
-[[ $all == no ]] || on=ON
-configure mingw -DGPGP_BUILD_TESTS=ON "-DGPGP_SHADERS_FROM=$shaders" -DGPGP_WITH_COMPILER=$on -DGPGP_WITH_TEXT=$on \
-  -DGPGP_BUILD_SAMPLES=$on -DGPGP_BUILD_INTEGRATIONS=$on
+# Without pkg-config libgpgp_text is not found to be possible, while all else is compiled in the same way.
+withoutText=ON
+[[ $all == no ]] || withoutText=OFF
+configure mingw -DGPGP_BUILD_TESTS=ON "-DGPGP_SHADERS_FROM=$shaders" -DGPGP_WITH_TEXT=ON -DGPGP_WITH_COMPILER=$compilers \
+  -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=$withoutText
 targets=(gpgp gpgp_static gpgp_cli paths_test core_test contract_test wrong_call)
-[[ $all == no ]] || targets=(all)
+[[ $all == no ]] || targets+=(gpgp_text gpgp_text_static vector_text_{shape,layout,query}_test visibility_edge_test
+  vector_cpu_reference_test vector_patch_test visibility_cpu_reference_test)
+[[ $compilers == OFF ]] || targets=(all)
 cmake --build "$build" --parallel "$(jobCount)" --target "${targets[@]}" >"$build/build.log" 2>&1 || {
   grep -E -A 5 'error|FAILED' "$build/build.log" | head -n 60 >&2
   die "gpgp does not build for Windows ($build/build.log)"
@@ -83,10 +90,10 @@ exports() {
     "needs $(x86_64-w64-mingw32-objdump -p "$library" | sed -n 's/^.*DLL Name: //p' | paste -sd' ')"
 }
 exports "$build/libgpgp.dll" run-time core spawn lsystem vector ui visibility atlas
-if [[ $all == yes ]]; then
+if [[ $compilers == ON ]]; then
   exports "$build/libgpgp_compiler.dll" compiler core spawn spawn_builder lsystem vector
-  exports "$build/libgpgp_text.dll" text text
 fi
+if [[ $all == yes ]]; then exports "$build/libgpgp_text.dll" text text; fi
 
 # ---------------------------------------------------------------- under Wine
 
@@ -151,10 +158,14 @@ if [[ $all == no ]]; then
   test_ contract_test '*RecordingOnlyRecords*:*Uploading*:*LeavesExactly*:*PlacesTheDocumented*:*ADropped*:*ThreeFrames*'
 fi
 if [[ $all == yes ]]; then
-  for name in contract_test spawn_evaluator_test vector_patch_test visibility_cpu_reference_test visibility_edge_test; do test_ $name; done
-  test_ vector_cpu_reference_test 'CpuTest.*'
-  test_ spawn_gpu_test '*KernelsEqualTheEvaluator*:*EqualsTheEvaluator*'
   for name in shape layout query; do test_ vector_text_${name}_test; done
+  test_ visibility_edge_test '*EdgeTest*'
+  test_ vector_cpu_reference_test 'CpuTest.*'
+  for name in vector_patch_test visibility_cpu_reference_test contract_test; do test_ $name; done
+fi
+if [[ $compilers == ON ]]; then
+  test_ spawn_evaluator_test
+  test_ spawn_gpu_test '*KernelsEqualTheEvaluator*:*EqualsTheEvaluator*'
 fi
 
 # ---------------------------------------------------------------- beside Linux
@@ -196,7 +207,7 @@ else
   for method in standard exact; do
     same "visibility $method" visibility "$folder/ein Häschen 兎.obj" --method $method --size 320x180 --image "{out}"
   done
-  if [[ $all == yes ]]; then
+  if [[ $compilers == ON ]]; then
     same vector vector tests/data/svg/hud.svg --size 512x512 --out "{out}"
     same spawn spawn samples/grammars/simple_house.pga --size 320x180 --image "{out}"
     same text text tests/data/fetched/fonts/DejaVuSans.ttf "Grüße, κόσμε" "{out}" --size 32
