@@ -6,7 +6,7 @@
 #
 #   base      what libgpgp, the command without compilers and the tests need: headers, zlib, libpng, tinygltf,
 #             GoogleTest, an import library of the Vulkan loader
-#   compiler  libgpgp_compiler: pugixml, SPIRV-Tools, glslang
+#   compiler  libgpgp_compiler: pugixml, SPIRV-Tools, glslang. Not built to its end yet: expect to mend it.
 #   text      libgpgp_text: FreeType, HarfBuzz, FriBidi, ICU
 #
 #   GPGP_DEPENDENCIES=folder     where they go (build/mingw-dependencies)
