@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds everything and runs all tests: release, then what tests run again in other forms (on
 # a second device, by passes of other devices, with fewer services), then a build of all but the tests with the second
-# compiler, then all again under AddressSanitizer and UndefinedBehaviorSanitizer. Works as root or through sudo, asks
-# nothing, can be run again. Ends with a summary; exits 1 where anything failed.
+# compiler, then libgpgp for Windows under Wine, then all again under AddressSanitizer and UndefinedBehaviorSanitizer.
+# Works as root or through sudo, asks nothing, can be run again. Ends with a summary; exits 1 where anything failed.
 #
 #   tests/run.sh            everything
 #   tests/run.sh --quick    release only
@@ -32,13 +32,16 @@ done
 started=$SECONDS
 summary=()
 failed=no
-# step NAME COMMAND...: runs it, notes how it went and goes on.
+# step NAME COMMAND...: runs it, notes how it went and goes on. Exit code 77: packages are missing that it can do without.
 step() {
-  local name=$1 begin=$SECONDS
+  local name=$1 begin=$SECONDS code=0
   shift
   say "$name"
-  if ("$@"); then # a shell of its own: what gives up in there ends the step, not the run
+  ("$@") || code=$? # a shell of its own: what gives up in there ends the step, not the run
+  if ((code == 0)); then
     summary+=("passed  $name ($((SECONDS - begin)) s)")
+  elif ((code == 77)); then
+    summary+=("LEFT OUT  $name: packages are missing")
   else
     summary+=("FAILED  $name ($((SECONDS - begin)) s)")
     failed=yes
@@ -59,6 +62,8 @@ testPreset() { ctest --preset "$1" --parallel "$(jobCount)" "${@:2}"; }
 buildAndTest() {
   if step "build $1 (build/$1)" buildPreset "$1"; then step "tests, $1" testPreset "$1" -LE forms || true; fi
 }
+
+windowsUnderWine() { tests/windows.sh --install && tests/windows.sh; }
 
 # hasTimeFor PERCENT NAME: whether that much of what release took is left of the time; if not, notes it.
 minutes=${GPGP_TEST_MINUTES:-80}
@@ -88,6 +93,9 @@ fi
 if [[ $quick == no ]]; then
   if hasTimeFor 20 "build with clang"; then
     step "build with clang, without tests (build/clang)" buildPreset clang OFF || true
+  fi
+  if hasTimeFor 20 "Windows, under Wine"; then
+    step "Windows, under Wine (tests/windows.sh)" windowsUnderWine || true
   fi
   if hasTimeFor 100 "build and tests, asan-ubsan"; then buildAndTest asan-ubsan; fi
 fi

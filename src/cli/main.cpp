@@ -34,6 +34,7 @@ struct Subcommand {
 int run(int argc, char** argv) {
   CLI::App app("gpgp: grammars, vector graphics and triangle visibility on the GPU", "gpgp");
   app.footer(kExamples);
+  app.allow_windows_style_options(false); // what begins with / is a file, there as elsewhere
   app.require_subcommand(1);
   app.set_version_flag("--version", "gpgp " + std::to_string(GPGP_VERSION_MAJOR) + "." +
                                         std::to_string(GPGP_VERSION_MINOR) + "." + std::to_string(GPGP_VERSION_PATCH));

@@ -1,5 +1,6 @@
 #include "core/context.h"
 
+#include "core/open_file.h"
 #include "core/recorder.h"
 #include "core/requirements.h"
 #include "core/resident.h"
@@ -251,10 +252,7 @@ Result<std::pmr::vector<std::byte>> Context::readFile(const char* path) {
       return makeError(GPGP_ERROR_IO, "%s: the engine's file callback returned %s", path, gpgpResultString(result));
     return bytes;
   }
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  const std::unique_ptr<std::FILE, Closer> file(std::fopen(path, "rb"));
+  const File file = openToRead(path);
   if (!file) return makeError(GPGP_ERROR_IO, "%s: cannot be opened", path);
   for (;;) {
     constexpr size_t kPiece = 1 << 16;

@@ -32,6 +32,13 @@ bool hasInstanceExtension(const char* layer, const char* name) {
                      [name](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
+/// GPGP_VALIDATION=outside: the layer works where it is not seen from here. Under Wine that is in the loader of the
+/// host, which has been told to use it and to write its messages into a file (tests/windows.sh).
+bool isValidatedOutside() {
+  const char* where = std::getenv("GPGP_VALIDATION");
+  return where && std::strcmp(where, "outside") == 0;
+}
+
 /// volk's loading functions write its globals; devices may be made on many threads.
 std::mutex& volkMutex() {
   static std::mutex mutex;
@@ -101,15 +108,16 @@ VkBool32 HeadlessDevice::onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT severi
 }
 
 void HeadlessDevice::createInstance(const DeviceOptions& options) {
-  if (options.validation && !hasLayer(kValidationLayer))
+  const bool validated = options.validation && !isValidatedOutside();
+  if (validated && !hasLayer(kValidationLayer))
     throw std::runtime_error(
         "the Khronos validation layer is missing (Debian: apt-get install vulkan-validationlayers)");
   std::vector<const char*> layers, extensions;
-  if (options.validation) layers.push_back(kValidationLayer);
+  if (validated) layers.push_back(kValidationLayer);
   debugUtils_ = hasInstanceExtension(nullptr, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) ||
-                (options.validation && hasInstanceExtension(kValidationLayer, VK_EXT_DEBUG_UTILS_EXTENSION_NAME));
+                (validated && hasInstanceExtension(kValidationLayer, VK_EXT_DEBUG_UTILS_EXTENSION_NAME));
   if (debugUtils_) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
-  if (options.validation) extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
+  if (validated) extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
 
   apiVersion_ = options.apiVersion;
   VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
@@ -129,7 +137,7 @@ void HeadlessDevice::createInstance(const DeviceOptions& options) {
   validation.pNext = &messenger; // instance creation and destruction are listened to as well
 
   VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
-  if (options.validation) info.pNext = &validation;
+  if (validated) info.pNext = &validation;
   info.pApplicationInfo = &application;
   info.enabledLayerCount = static_cast<uint32_t>(layers.size());
   info.ppEnabledLayerNames = layers.data();
@@ -141,8 +149,7 @@ void HeadlessDevice::createInstance(const DeviceOptions& options) {
     volkLoadInstanceOnly(instance_); // for vkGetDeviceProcAddr, which volkLoadDeviceTable uses
     vki_ = loadInstanceTable(instance_);
   }
-  if (options.validation)
-    check(vki_.createDebugUtilsMessenger(instance_, &messenger, nullptr, &messenger_), "debug messenger");
+  if (validated) check(vki_.createDebugUtilsMessenger(instance_, &messenger, nullptr, &messenger_), "debug messenger");
 }
 
 void HeadlessDevice::createDevice(const DeviceOptions& options) {

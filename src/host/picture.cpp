@@ -29,7 +29,8 @@ void writePng(const std::filesystem::path& file, const Picture& picture) {
 Picture readPng(const std::filesystem::path& file) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
-  if (!png_image_begin_read_from_file(&image, file.c_str()))
+  const std::vector<uint8_t> bytes = readFile(file);
+  if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()))
     throw std::runtime_error(file.string() + ": " + image.message);
   image.format = PNG_FORMAT_RGBA;
   Picture picture;

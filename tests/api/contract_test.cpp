@@ -1,5 +1,6 @@
 // What every record function promises the engine, on every service: what it calls, what state it leaves, which
 // barriers it places, and that scratch, drops, frames in flight and kinds of command buffers do not matter.
+#include "aligned.h"
 #include "counting_new.h"
 #include "host/frames.h"
 #include "scenarios.h"
@@ -25,11 +26,11 @@ struct ContractTest : testing::TestWithParam<std::string> {
   GpgpHostAllocator allocator{&hostAllocations,
                               [](void* user, size_t size, size_t alignment) {
                                 ++*static_cast<uint64_t*>(user);
-                                return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+                                return allocateAligned(size, alignment);
                               },
                               [](void* user, void* memory, size_t, size_t) {
                                 ++*static_cast<uint64_t*>(user);
-                                std::free(memory);
+                                freeAligned(memory);
                               }};
 
   void SetUp() override {

@@ -1,5 +1,7 @@
 #include "counting_new.h"
 
+#include "aligned.h"
+
 #include <atomic>
 #include <cstddef>
 #include <cstdlib>
@@ -21,7 +23,7 @@ UncountedNew::~UncountedNew() { --uncounted; }
 namespace {
 void* allocate(std::size_t size, std::size_t alignment) {
   if (!uncounted) ++calls;
-  return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  return gpgp::test::allocateAligned(size, alignment);
 }
 } // namespace
 
@@ -36,8 +38,8 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
 void* operator new(std::size_t size, std::align_val_t alignment, const std::nothrow_t&) noexcept {
   return allocate(size, static_cast<std::size_t>(alignment));
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory) noexcept { gpgp::test::freeAligned(memory); }
+void operator delete(void* memory, std::size_t) noexcept { gpgp::test::freeAligned(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { gpgp::test::freeAligned(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { gpgp::test::freeAligned(memory); }
 #endif

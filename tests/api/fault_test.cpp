@@ -1,5 +1,6 @@
 // Faults: for every n, the n-th host allocation, the n-th device allocation, or the n-th Vulkan object fails. Creation
 // then fails with the right error, nothing leaks, and the context goes on working.
+#include "aligned.h"
 #include "scenarios.h"
 #include "vulkan_proxy.h"
 
@@ -26,7 +27,7 @@ struct Faults {
             [](void* user, size_t size, size_t alignment) -> void* {
               Faults& self = *static_cast<Faults*>(user);
               if (++self.hostCalls == self.hostFailAt) return nullptr;
-              void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+              void* memory = allocateAligned(size, alignment);
               self.host[memory] = {size, alignment};
               return memory;
             },
@@ -36,7 +37,7 @@ struct Faults {
               ASSERT_NE(at, self.host.end()) << "freed what was never allocated";
               EXPECT_EQ(at->second, std::pair(size, alignment)) << "freed with another size than allocated";
               self.host.erase(at);
-              std::free(memory);
+              freeAligned(memory);
             }};
   }
   GpgpGpuAllocator gpuCallbacks() {

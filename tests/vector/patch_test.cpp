@@ -308,8 +308,10 @@ TEST(Patches, CostGrowsAboutLinearly) {
     return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   };
   // Fresh pages cost some machines more than converting does: memory that is given back is used again.
+#ifdef M_MMAP_THRESHOLD
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
   measure(24);
   double small = 1e30, large = 1e30; // the best of a few
   for (int i = 0; i < 5; ++i) {

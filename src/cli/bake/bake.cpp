@@ -65,7 +65,7 @@ std::string typeOf(const BakeOptions& options, const std::string& file, std::str
     if (type.empty()) throw Usage("standard input is no drawing, font or grammar; --type says what it is");
     return type;
   }
-  std::string ending = std::filesystem::path(file).extension();
+  std::string ending = std::filesystem::path(file).extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (ending == ".pga" || ending == ".gml") return "grammar";
   if (ending == ".svg" || ending == ".svgz") return "drawing";

@@ -1,6 +1,6 @@
 #include "cli/shared/progress.h"
 
-#include <unistd.h>
+#include "host/console.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ std::string durationText(double seconds) {
 
 Progress::Target Progress::standardError() {
   Target target;
-  target.terminal = isatty(STDERR_FILENO) != 0;
+  target.terminal = host::isTerminal(stderr);
   if (target.terminal) target.first = std::chrono::milliseconds(250), target.period = std::chrono::milliseconds(100);
   return target;
 }

@@ -285,7 +285,9 @@ std::filesystem::path tunedFile(const std::vector<std::string>& files, const Bak
   };
   std::filesystem::path cache = folder("XDG_CACHE_HOME");
   if (cache.empty() && !folder("HOME").empty()) cache = folder("HOME") / ".cache";
-  if (cache.empty()) throw Failure("neither XDG_CACHE_HOME nor HOME say where tuned kernels could be kept");
+  if (cache.empty()) cache = folder("LOCALAPPDATA");
+  if (cache.empty())
+    throw Failure("none of XDG_CACHE_HOME, HOME and LOCALAPPDATA says where tuned kernels could be kept");
   char sum[24];
   std::snprintf(sum, sizeof sum, "-%08x-%zu", grammar.words[shader::kHeaderChecksum], grammar.words.size());
   std::string names;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace gpgp::spawn {
@@ -339,8 +340,8 @@ Status rectify(MeshPool& pool, Form& form, float degrees) {
       for (size_t i = 0; i < n; ++i) {
         const glm::dvec2 d = points[(i + 1) % n] - points[i];
         const double angle = std::atan2(main.x * d.y - main.y * d.x, main.x * d.x + main.y * d.y);
-        const double quarters = std::round(angle / (M_PI / 2));
-        const bool near = std::fabs(angle - quarters * M_PI / 2) <= degrees / 57.29577951;
+        const double quarters = std::round(angle / (std::numbers::pi / 2));
+        const bool near = std::fabs(angle - quarters * std::numbers::pi / 2) <= degrees / 57.29577951;
         const int turns = int(quarters) & 3;
         const glm::dvec2 side(-main.y, main.x);
         const glm::dvec2 exact = turns == 0 ? main : turns == 1 ? side : turns == 2 ? -main : -side;

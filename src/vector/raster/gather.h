@@ -96,7 +96,7 @@ private:
   bool addShape(const shader::ShapeRecord& shape, uint32_t source, const shader::vec4& color);
   uint32_t addSource(const Map& map, float opacity, uint32_t firstImage, const Chain& clip);
   core::Result<uint32_t> bind(const core::Resident& asset);
-  core::Error wrong(GpgpResult code, const char* format, ...) const __attribute__((format(printf, 3, 4)));
+  [[gnu::format(printf, 3, 4)]] core::Error wrong(GpgpResult code, const char* format, ...) const;
 
   static constexpr uint32_t kNone = UINT32_MAX;
   LayerPlanner* const planner_;

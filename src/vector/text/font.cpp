@@ -1,6 +1,8 @@
 // Opens fonts and reads what they say of themselves.
 #include "vector/text/font.h"
 
+#include "core/open_file.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -48,7 +50,7 @@ Result<std::vector<char>> readFile(const char* path, const GpgpFileSystem* fileS
       return makeError(GPGP_ERROR_IO, "cannot read %s: the file callback returned %d and %zu bytes", path, code, size);
     return bytes;
   }
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path, "rb"), std::fclose);
+  const core::File file = core::openToRead(path);
   if (!file) return makeError(GPGP_ERROR_IO, "cannot open %s", path);
   std::vector<char> bytes;
   char block[1 << 16];

@@ -3,6 +3,7 @@
 // pictures that HarfBuzz and cairo make here.
 //
 // Where GPGP_TEXT_PICTURES names a folder, the scripts are written there, gpgp's above cairo's.
+#include "../../api/aligned.h"
 #include "../../api/counting_new.h"
 #include "../../api/vulkan_proxy.h"
 #include "../../cli/files.h"
@@ -64,9 +65,9 @@ struct TextGpu : testing::Test {
   GpgpHostAllocator allocator{&hostAllocations,
                               [](void* user, size_t size, size_t alignment) {
                                 ++*static_cast<uint64_t*>(user);
-                                return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+                                return allocateAligned(size, alignment);
                               },
-                              [](void*, void* memory, size_t, size_t) { std::free(memory); }};
+                              [](void*, void* memory, size_t, size_t) { freeAligned(memory); }};
   GpgpContext context = nullptr;
   std::unique_ptr<host::FrameRing> ring;
   void SetUp() override {
