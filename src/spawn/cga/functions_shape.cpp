@@ -13,10 +13,11 @@ CgaValue Deriver::cgaFunction(uint32_t function, uint32_t first, uint32_t count)
       GPGP_CGA_FUNCTIONS(GPGP_CGA_ROW)
 #undef GPGP_CGA_ROW
   };
+  // Those that ask the shape look at all of it.
+  if (function >= static_cast<uint32_t>(Function::geometry_area_) &&
+      function <= static_cast<uint32_t>(Function::contextCompare_))
+    works(meshCorners(pool_, shape_.form.mesh));
   if (stopped_) return floatValue(0);
-  const bool asksShape = function >= static_cast<uint32_t>(Function::geometry_area_) &&
-                         function <= static_cast<uint32_t>(Function::contextCompare_);
-  if (asksShape && !works(meshCorners(pool_, shape_.form.mesh))) return floatValue(0);
   return (this->*kFunctions[function])({&stack_[first], count});
 }
 
