@@ -269,7 +269,9 @@ Status cleanup(MeshPool& pool, Form& form, const Cleanup& what) {
     const auto neighbours = outlineNeighbours(pool, form, faces, welded);
     for (uint32_t v = 0; v < welded.size(); ++v) {
       const auto [a, b] = neighbours[v];
-      if (a == kNone || !canDrop(pool, form, faces, welded, v)) continue;
+      if (a == kNone) continue;
+      if (!countSteps(pool, meshCorners(pool, form.mesh))) return attempt.end(kGeometryTooLarge);
+      if (!canDrop(pool, form, faces, welded, v)) continue;
       const vec3 in = unit3(positions[v] - positions[a]), out = unit3(positions[b] - positions[v]);
       if (inner3(in, out) >= cosine) dropPlace(pool, form, faces, welded, v);
     }
@@ -295,7 +297,9 @@ Status reduce(MeshPool& pool, Form& form, float part) {
     uint32_t chosen = kNone;
     for (uint32_t v = 0; v < welded.size(); ++v) {
       const auto [a, b] = neighbours[v];
-      if (a == kNone || !canDrop(pool, form, faces, welded, v)) continue;
+      if (a == kNone) continue;
+      if (!countSteps(pool, meshCorners(pool, form.mesh))) return attempt.end(kGeometryTooLarge);
+      if (!canDrop(pool, form, faces, welded, v)) continue;
       const float moved = length3(outer3(positions[a] - positions[v], positions[b] - positions[v]));
       if (chosen != kNone && moved >= best) continue;
       best = moved;
