@@ -1,5 +1,5 @@
 % A castle: four round towers, walls with battlements between them, a gate, and a keep.
-% Axiom: a box, for example 40 x 12 x 40 metres.
+% 40 x 12 x 40 metres, whatever the size of the axiom.
 /tower 8 var          % width of a tower
 /merlon 1.1 var       % width of a battlement
 
@@ -88,6 +88,7 @@
 /turned { 0 90 0 rotate Z Y X swapsize } def
 
 /Box axiom
+40 12 40 scale
 dup Y size -0.5 mul !floor 0 :floor 0 translate -0.9 0.2 -0.9 scale Yard
 X [
   tower { Z [ tower { roundTower } -1 { turned wall } tower { roundTower } ] subdiv }

@@ -21,8 +21,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   derive.maxShapes = 500;
   derive.maxFunctionDepth = 32;
   derive.maxInstructions = 20000;
+  derive.maxFaces = 2000;
+  derive.maxVertices = 8000;
+  derive.maxGeometryMiB = 16;
+  derive.maxWork = 1'000'000;
   cga::Axiom axiom;
   axiom.size = {8, 0, 6};
-  cga::derive(*program, {axiom}, derive, messages);
+  const cga::Derivation all = cga::derive(*program, {axiom}, derive, messages);
+  if (all.work > 4 * derive.maxWork) std::abort(); // an operation that nothing bounds
   return 0;
 }

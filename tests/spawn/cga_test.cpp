@@ -2,8 +2,7 @@
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wrestrict" // gcc 12 sees overlaps in sums of strings where there are none
 #endif
-#include "spawn/cga/compile.h"
-#include "spawn/cga/derive.h"
+#include "cga_run.h"
 #include "spawn/cga/parser.h"
 #include "spawn/cga/split_layout.h"
 
@@ -17,58 +16,6 @@
 
 namespace gpgp::spawn::cga {
 namespace {
-
-std::string allOf(const Messages& messages) {
-  std::string text;
-  for (const auto& m : messages.sorted()) text += format(m.diagnostic, m.file) + "\n";
-  return text;
-}
-
-std::optional<Program> compiled(const std::string& text, Messages& messages,
-                                const std::map<std::string, std::string>& files = {}, const std::string& style = {}) {
-  CompileOptions options;
-  options.path = "main.cga";
-  options.style = style;
-  options.read = [&](const std::string& path, std::string& into) {
-    const auto found = files.find(path);
-    if (found == files.end()) return false;
-    into = found->second;
-    return true;
-  };
-  return compile(text, options, messages);
-}
-
-Axiom lot(float x, float z, uint32_t seed = 1) {
-  Axiom axiom;
-  axiom.size = {x, 0, z};
-  axiom.seed = seed;
-  return axiom;
-}
-
-struct Derived {
-  Derivation all;
-  std::string messages;
-  std::map<std::string, size_t> rules;
-  double sum(const std::string& report) const {
-    const auto found = all.reports.find(report);
-    return found == all.reports.end() ? 0.0 : found->second.sum;
-  }
-};
-
-Derived run(const std::string& text, const std::vector<Axiom>& axioms, const DeriveOptions& options = {},
-            const std::map<std::string, std::string>& files = {}) {
-  Derived result;
-  Messages messages;
-  const auto program = compiled(text, messages, files);
-  EXPECT_TRUE(program) << allOf(messages);
-  if (program) result.all = derive(*program, axioms, options, messages);
-  result.messages = allOf(messages);
-  for (const Leaf& leaf : result.all.leaves) ++result.rules[result.all.names[leaf.name]];
-  return result;
-}
-Derived run(const std::string& text) { return run(text, {lot(10, 20)}); }
-
-std::vector<std::string> printed(const std::string& text) { return run(text).all.prints; }
 
 // ---------------------------------------------------------------- expressions
 
@@ -373,14 +320,14 @@ TEST(CgaMessages, ErrorsHavePlacesAndSuggestions) {
 }
 
 TEST(CgaMessages, WhatIsNotSupportedIsNamedOnceAndTheRestDerives) {
-  const Derived d = run("Lot --> splitArea(x) { 1: A } softenNormals(3) softenNormals(4) extrude(2) Unknown\n");
+  const Derived d = run("Lot --> modify { A } softenNormals(3) softenNormals(4) extrude(2) Unknown\n");
   EXPECT_EQ(d.all.leaves.size(), 1u);
   EXPECT_NE(
-      d.messages.find("main.cga:1:31: warning: the operation 'softenNormals' is not supported, and does nothing (and "
+      d.messages.find("main.cga:1:22: warning: the operation 'softenNormals' is not supported, and does nothing (and "
                       "1 more of these)"),
       std::string::npos)
       << d.messages;
-  EXPECT_NE(d.messages.find("'splitArea' is not supported"), std::string::npos) << d.messages;
+  EXPECT_NE(d.messages.find("'modify' is not supported"), std::string::npos) << d.messages;
 }
 
 TEST(CgaMessages, LimitsEndInErrorsThatNameThem) {

@@ -176,6 +176,7 @@ GPGP_FN uint bridgeFrom(GPGP_POOL Runs r, uint run) {
   const uint at = r.runAt + kRunWords * run;
   const float place = workFloat(GPGP_P at + 4u);
   const float slope = workFloat(GPGP_P at + 5u);
+  countSteps(GPGP_P r.runs);
   uint best = 0xffffffffu;
   float bestPlace = 0.0f;
   float bestSlope = 0.0f;
@@ -206,6 +207,7 @@ GPGP_FN bool isInLoop(GPGP_POOL Builder b, uint loop, vec3 p, vec3 normal) {
   const uint first = workWord(GPGP_P b.loopAt + kLoopWords * loop);
   const uint corners = workWord(GPGP_P b.loopAt + kLoopWords * loop + 1u);
   bool isInside = false;
+  countSteps(GPGP_P corners);
   for (uint c = 0u; c < corners; ++c) {
     const uint next = c + 1u == corners ? 0u : c + 1u;
     const vec2 q0 = inPlane(basis, builderPosition(GPGP_P b, workWord(GPGP_P b.cornerAt + kCornerWords * (first + c))));
@@ -385,6 +387,8 @@ GPGP_FN void addCaps(GPGP_POOL GPGP_INOUT(Builder) b, uint caps, uint capCount, 
   for (uint i = 0u; i < capCount; ++i) {
     const uint at = caps + 2u * i;
     if (workWord(GPGP_P at) == 0xffffffffu) continue;
+    if (!countSteps(GPGP_P 1u)) b.status = kGeometryTooLarge;
+    if (b.status != kGeometryOk) break;
     const uint first = ordered;
     const vec3 begin = builderPosition(GPGP_P b, workWord(GPGP_P at));
     uint bridge = i;
@@ -409,6 +413,7 @@ GPGP_FN void addCaps(GPGP_POOL GPGP_INOUT(Builder) b, uint caps, uint capCount, 
       const float place = inPlane(basis, q).x;
       for (uint k = firstBridgeFrom(GPGP_P sortedAt, capCount, place - slack); k < capCount; ++k) {
         if (workFloat(GPGP_P sortedAt + 2u * k) > place + slack) break;
+        countSteps(GPGP_P 1u);
         const uint j = workWord(GPGP_P sortedAt + 2u * k + 1u);
         const uint start = workWord(GPGP_P caps + 2u * j);
         if (start == 0xffffffffu) continue;
@@ -442,6 +447,7 @@ GPGP_FN void addCaps(GPGP_POOL GPGP_INOUT(Builder) b, uint caps, uint capCount, 
   }
   for (uint l = 0u; l < loops && b.status == kGeometryOk; ++l) {
     if (workWord(GPGP_P loopAt + 3u * l + 2u) != 0u) continue;
+    if (!countSteps(GPGP_P loops)) b.status = kGeometryTooLarge;
     beginFace(GPGP_P b, kTagCut);
     const uint outer = b.loops;
     for (uint m = 0u; m < loops; ++m) {

@@ -59,7 +59,13 @@ GPGP_CONST uint kTagEave = 256u;    // edges of roofs
 GPGP_CONST uint kTagRidge = 512u;
 GPGP_CONST uint kTagHip = 1024u;
 GPGP_CONST uint kTagValley = 2048u;
-GPGP_CONST uint kTagUser = 65536u;
+GPGP_CONST uint kTagBooleanA = 4096u; // faces of the operands
+GPGP_CONST uint kTagBooleanB = 8192u;
+GPGP_CONST uint kTagUser = 65536u;             // the names of a grammar, up to kTagStreetFront
+GPGP_CONST uint kTagStreetFront = 0x10000000u; // edges and what is extruded from them, by the street that they are at
+GPGP_CONST uint kTagStreetBack = 0x20000000u;
+GPGP_CONST uint kTagStreetLeft = 0x40000000u;
+GPGP_CONST uint kTagStreetRight = 0x80000000u;
 
 /// A box in the axiom's frame: its corner, unit axes at right angles to each other, right-handed, and extents in
 /// metres, none negative.
@@ -90,7 +96,16 @@ struct MeshPool {
   uint workCapacity = 0;
   uint workUsed = 0;
   uint workNeeded = 0; // the largest that was asked for
+  // Work is counted in steps: words of memory that were taken, corners that were looked at. Behind mostSteps nothing
+  // gets workspace, so that operators end.
+  unsigned long long steps = 0;
+  unsigned long long mostSteps = ~0ull;
 };
+/// Whether there are steps left.
+inline bool countSteps(MeshPool& pool, unsigned long long count) {
+  pool.steps += count;
+  return pool.steps <= pool.mostSteps;
+}
 #define GPGP_POOL ::gpgp::shader::MeshPool &pool,
 #define GPGP_POOL0 ::gpgp::shader::MeshPool& pool
 #define GPGP_P pool,
@@ -99,6 +114,7 @@ inline uint poolWord(const MeshPool& pool, uint at) { return pool.words[at]; }
 inline void setPoolWord(MeshPool& pool, uint at, uint v) { pool.words[at] = v; }
 /// 0 where there is no room.
 inline uint takePool(MeshPool& pool, uint count) {
+  countSteps(pool, count);
   const uint sum = pool.needed + count;
   pool.needed = sum < pool.needed ? 0xffffffffu : sum;
   if (count > pool.capacity || pool.used > pool.capacity - count) {
@@ -113,6 +129,7 @@ inline void setWorkWord(MeshPool& pool, uint at, uint v) { pool.work[at] = v; }
 GPGP_CONST uint kNoWork = 0xffffffffu;
 /// kNoWork where there is no room.
 inline uint takeWork(MeshPool& pool, uint count) {
+  if (!countSteps(pool, count)) return kNoWork;
   const uint sum = pool.workUsed + count;
   if (sum < count || sum > pool.workCapacity) {
     pool.workNeeded = sum < count ? 0xffffffffu : sum > pool.workNeeded ? sum : pool.workNeeded;
@@ -138,6 +155,7 @@ void setWorkWord(uint at, uint v);
 uint takeWork(uint count);
 uint workMark();
 void releaseWork(uint mark);
+bool countSteps(uint count) { return true; } // the device bounds its work itself
 #endif
 
 GPGP_FN float poolFloat(GPGP_POOL uint at) { return uintBitsToFloat(poolWord(GPGP_P at)); }

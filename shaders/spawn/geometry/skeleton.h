@@ -316,6 +316,7 @@ GPGP_FN bool isReflexWave(GPGP_POOL Skeleton s, uint v) {
 }
 /// What v meets first, of all edges.
 GPGP_FN void timeSplits(GPGP_POOL Skeleton s, uint v) {
+  countSteps(GPGP_P 32u * s.running); // wide arithmetic, some 100 ns each
   setWorkWide(GPGP_P s.vertexAt + kVertexWords * v + kVertexSplit, wide(kSkeletonNever));
   setWaveWord(GPGP_P s, v, kVertexTarget, kNone);
   for (uint i = 0u; i < s.running; ++i) {
@@ -326,6 +327,7 @@ GPGP_FN void timeSplits(GPGP_POOL Skeleton s, uint v) {
 GPGP_FN void timeWave(GPGP_POOL Skeleton s, uint v) {
   if (!waveAlive(GPGP_P s, v)) return;
   timeVanishing(GPGP_P s, v);
+  countSteps(GPGP_P 32u * s.running);
   for (uint i = 0u; i < s.running; ++i) {
     const uint other = workWord(GPGP_P s.activeAt + i);
     if (isReflexWave(GPGP_P s, other)) timeSplit(GPGP_P s, other, v);
@@ -521,6 +523,10 @@ GPGP_FN void propagate(GPGP_POOL GPGP_INOUT(Skeleton) s, float until) {
   for (uint turn = 0u; s.status == kGeometryOk && s.running > 0u; ++turn) {
     if (turn == most) {
       s.status = kGeometryNotSimple;
+      return;
+    }
+    if (!countSteps(GPGP_P 4u * s.running)) {
+      s.status = kGeometryTooLarge;
       return;
     }
     uint vanishing = kNone;

@@ -157,6 +157,10 @@ Outcome spawnCga(const CgaOptions& options) {
   derive.keepTriangles = !options.image.empty() || !options.out.empty();
   if (options.maxDepth) derive.maxDepth = options.maxDepth;
   if (options.maxShapes) derive.maxShapes = options.maxShapes;
+  if (options.maxFaces) derive.maxFaces = options.maxFaces;
+  if (options.maxVertices) derive.maxVertices = options.maxVertices;
+  if (options.maxGeometry) derive.maxGeometryMiB = options.maxGeometry;
+  if (options.maxWork) derive.maxWork = uint64_t{options.maxWork} * 1'000'000;
 
   CompileOptions compile{options.file, options.start, options.style, filesOnDisk()};
   Messages compiled;

@@ -17,8 +17,9 @@ struct CgaOptions {
   bool geographic = false; ///< coordinates of GeoJSON are longitude and latitude
   std::string image, out;
   SceneView view;
-  uint32_t maxDepth = 0;  ///< 0: the default
-  uint64_t maxShapes = 0; ///< 0: the default
+  uint32_t maxDepth = 0;                                                ///< 0: the default
+  uint64_t maxShapes = 0;                                               ///< 0: the default
+  uint32_t maxFaces = 0, maxVertices = 0, maxGeometry = 0, maxWork = 0; ///< MiB; million steps; 0: the default
 };
 
 bool isCga(const std::string& file);

@@ -118,7 +118,9 @@ private:
         const glm::dvec3 &a = points[i], &b = points[(i + 1) % points.size()];
         area += a.x * b.y - a.y * b.x;
       }
-      if ((area < 0) == axiom.loopSizes.empty()) std::reverse(points.begin(), points.end());
+      const bool turns = (area < 0) == axiom.loopSizes.empty();
+      if (turns) std::reverse(points.begin(), points.end());
+      if (axiom.loopSizes.empty()) streets(properties, points.size(), turns, axiom);
       axiom.loopSizes.push_back(static_cast<uint32_t>(points.size()));
       places_.insert(places_.end(), points.begin(), points.end());
     }
@@ -136,6 +138,22 @@ private:
       fail("the grammar has no rule \"" + rule.substr(0, 60) + "\" without parameters");
     result_.axioms.push_back(std::move(axiom));
     result_.rules.push_back(std::move(rule));
+  }
+
+  /// "streetWidth": of all edges of the outline, or an array of one for each; turned: the outline was reversed.
+  void streets(const Json& properties, size_t edges, bool turned, Axiom& axiom) const {
+    const auto found = properties.find("streetWidth");
+    if (found == properties.end() || found->is_null()) return;
+    const bool isArray = found->is_array();
+    if (!isArray && !found->is_number()) fail("\"streetWidth\" is a number, or an array of a number for each edge");
+    if (isArray && found->size() != edges)
+      fail("\"streetWidth\" has " + std::to_string(found->size()) + " numbers; the outline has " +
+           std::to_string(edges) + " edges");
+    for (size_t i = 0; i < edges; ++i) {
+      const Json& width = isArray ? (*found)[turned ? (2 * edges - 2 - i) % edges : i] : *found;
+      if (!width.is_number()) fail("\"streetWidth\" is a number, or an array of a number for each edge");
+      axiom.streetWidths.push_back(width.get<float>());
+    }
   }
 
   /// x east, z south, y up; around the middle of all where they are degrees.

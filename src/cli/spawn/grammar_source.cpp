@@ -4,6 +4,7 @@
 #include "cli/shared/messages.h"
 #include "spawn/language/build_graph.h"
 
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -75,7 +76,25 @@ struct Errors {
   }
 };
 
+} // namespace
+
+void expectGraphLanguage(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (ending == ".cga")
+    throw Usage(file +
+                ": a .cga file derives on the CPU and has no operator graph, so that it is not baked, tuned or "
+                "printed; `gpgp spawn " +
+                file + "` derives it, and --out writes its triangles");
+  if (ending == ".lsys")
+    throw Usage(file + ": an L-system has no operator graph, so that it is not baked, tuned or printed; `gpgp spawn " +
+                file + "` derives it, and gpgpCompileLsystem() makes the data that an engine loads");
+}
+
+namespace {
+
 Blob compile(std::span<const GrammarText> grammars, bool linked, const std::vector<std::string>& set, bool kernel) {
+  for (const GrammarText& grammar : grammars) expectGraphLanguage(grammar.file.path);
   std::vector<Assignment> assignments;
   assignments.reserve(set.size());
   for (const std::string& text : set) assignments.push_back(parseAssignment(text, linked));

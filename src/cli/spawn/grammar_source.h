@@ -22,6 +22,9 @@ void addGrammars(CLI::App& command, std::vector<std::string>& arguments);
 /// And its --set.
 void addVariables(CLI::App& command, std::vector<std::string>& set);
 
+/// Throws Usage where a file is of a language that derives without an operator graph: what does it, and how.
+void expectGraphLanguage(const std::string& file);
+
 struct GrammarText {
   GrammarFile file;
   std::string text; ///< or the bytes of a baked grammar

@@ -40,6 +40,7 @@ struct SpawnOptions {
   std::string schedule = "default", output = "instances", matching = "off";
   bool sorted = false, nodes = false, string = false;
   uint32_t maxModules = 0;
+  uint32_t maxFaces = 0, maxVertices = 0, maxGeometry = 0, maxWork = 0;
   spawn::Heuristics heuristics;
 };
 
@@ -288,6 +289,10 @@ Outcome spawnFile(const SpawnOptions& options, const CommonOptions& common) {
   cga.view = {options.imageSize, options.yaw, options.pitch, options.zoom, 0.003f};
   cga.maxDepth = options.maxDepth;
   cga.maxShapes = options.maxShapes;
+  cga.maxFaces = options.maxFaces;
+  cga.maxVertices = options.maxVertices;
+  cga.maxGeometry = options.maxGeometry;
+  cga.maxWork = options.maxWork;
   return spawnCga(cga);
 }
 
@@ -337,8 +342,10 @@ uint32_t startNamed(const BakedGraph& grammar, const std::string& name) {
 
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   if (std::any_of(options.grammars.begin(), options.grammars.end(), isCga)) return spawnFile(options, common);
-  if (!options.style.empty() || !options.attributes.empty() || options.geographic)
-    throw Usage("--style, --attr and --geographic are for .cga files");
+  if (!options.style.empty() || !options.attributes.empty() || options.geographic || options.maxFaces ||
+      options.maxVertices || options.maxGeometry || options.maxWork)
+    throw Usage("--style, --attr, --geographic, --max-faces, --max-vertices, --max-geometry and --max-work are for "
+                ".cga files");
   if (std::any_of(options.grammars.begin(), options.grammars.end(), isLsystem)) return spawnLsystem(options, common);
   if (options.string || options.maxModules) throw Usage("--string and --max-modules are for L-systems (.lsys)");
   const bool vertices = options.output == "vertices";
@@ -660,6 +667,15 @@ Work addSpawn(CLI::App& app) {
       ->check(CLI::Range(0u, 1u << 23));
   command->add_option("--max-depth", options->maxDepth,
                       "Budget: how deep rules nest in themselves (0: the library's default)");
+  command->add_option("--max-faces", options->maxFaces, "Of a .cga file: budget of faces of a shape (0: 250 000)");
+  command->add_option("--max-vertices", options->maxVertices,
+                      "Of a .cga file: budget of vertices of a shape (0: 1 000 000)");
+  command
+      ->add_option("--max-geometry", options->maxGeometry,
+                   "Of a .cga file: budget of the meshes of an axiom, and of its triangles, MiB (0: 2048)")
+      ->check(CLI::Range(0u, 16383u));
+  command->add_option("--max-work", options->maxWork,
+                      "Of a .cga file: budget of an axiom's work on geometry, million steps (0: 1000)");
   command->footer(R"(
 Examples:
   gpgp spawn sponge.pga                                 one axiom of 1 x 1 x 1

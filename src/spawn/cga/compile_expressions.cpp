@@ -206,6 +206,13 @@ Type Compiler::name(const Expression& e, const Context& context, bool selectorFi
       return Type::unknown;
     }
   }
+  if (selectorFirst && e.isCall && e.text == "isTagged" && !e.arguments.empty() && e.arguments.size() <= 2) {
+    arguments(e.text, e.arguments, context); // not whether the shape has the tag, but a selector of what has it
+    emit(kCgaPushBoolCode, {1});
+    source(context, e.place);
+    emit(kCgaFunctionCode, {static_cast<uint32_t>(Function::isTagged_), static_cast<uint32_t>(e.arguments.size() + 1)});
+    return Type::unknown;
+  }
   std::string last;
   bool isMissing = false;
   Module* module = resolve(e.text, context, last, isMissing);

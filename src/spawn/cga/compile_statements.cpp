@@ -233,9 +233,19 @@ void Compiler::selectors(const std::vector<Part>& parts, const Context& context,
 }
 
 void Compiler::block(const Statement& s, Operation operation, const Context& context) {
-  const bool isSplit = operation == Operation::split_;
-  arguments(s.name, s.arguments, context);
+  const bool isSplit = operation == Operation::split_ || operation == Operation::splitArea_;
   PendingPart pending{&s, {}, context, newLabel()};
+  if (operation == Operation::setbackPerEdge_ && !s.arguments.empty()) {
+    pending.perEdge = s.arguments[0].get();
+    for (size_t i = 0; i < s.arguments.size(); ++i) {
+      if (i)
+        expression(*s.arguments[i], context);
+      else
+        nothing();
+    }
+  } else {
+    arguments(s.name, s.arguments, context);
+  }
   uint32_t count = static_cast<uint32_t>(s.arguments.size());
   selectors(s.parts, context, !isSplit, count, pending.selectors);
   if (count > 1000) messages_.error(context.file(), s.place, "a block of more than 1000 parts");
@@ -264,9 +274,15 @@ void Compiler::parts(const PendingPart& pending) {
     emit(kCgaPartRepeated);
     emit(kCgaNoSelector);
     emitLabel(inner);
-    table(pending.statement->parts, pending, selector, inner, bodies);
+    table(pending.statement->parts, pending, selector, inner, nullptr, bodies);
   } else {
-    table(pending.statement->parts, pending, selector, pending.label, bodies);
+    const uint32_t perEdge = pending.perEdge ? newLabel() : 0;
+    table(pending.statement->parts, pending, selector, pending.label, pending.perEdge ? &perEdge : nullptr, bodies);
+    if (pending.perEdge) {
+      chunk(perEdge, pending.context.name, pending.context.locals.size(), pending.context.locals.size());
+      expression(*pending.perEdge, pending.context);
+      emit(kCgaReturnCode);
+    }
   }
   for (const auto& [code, label] : bodies) {
     const size_t visible = pending.context.locals.size();
@@ -279,11 +295,18 @@ void Compiler::parts(const PendingPart& pending) {
 }
 
 void Compiler::table(const std::vector<Part>& parts, const PendingPart& pending, size_t& selector, uint32_t label,
-                     std::vector<std::pair<const Body*, uint32_t>>& bodies) {
+                     const uint32_t* perEdge, std::vector<std::pair<const Body*, uint32_t>>& bodies) {
   place(label);
-  emit(static_cast<uint32_t>(parts.size()));
+  const size_t count = parts.size() + (perEdge ? 1 : 0);
+  emit(static_cast<uint32_t>(count));
   const size_t offsets = program_.words.size();
-  for (size_t i = 0; i < parts.size(); ++i) emit(0);
+  for (size_t i = 0; i < count; ++i) emit(0);
+  if (perEdge) {
+    program_.words[offsets + parts.size()] = static_cast<uint32_t>(program_.words.size());
+    emit(kCgaPartEach);
+    emit(kCgaNoSelector);
+    emitLabel(*perEdge);
+  }
   for (size_t i = 0; i < parts.size(); ++i) {
     const Part& part = parts[i];
     program_.words[offsets + i] = static_cast<uint32_t>(program_.words.size());
@@ -292,7 +315,7 @@ void Compiler::table(const std::vector<Part>& parts, const PendingPart& pending,
       emit(part.repeats ? kCgaPartRepeated : kCgaPartGroup);
       emit(kCgaNoSelector);
       emitLabel(target);
-      table(part.group, pending, selector, target, bodies);
+      table(part.group, pending, selector, target, nullptr, bodies);
     } else {
       emit(part.isOneShape ? kCgaPartTogether : kCgaPartEach);
       emit(pending.selectors[selector++]);

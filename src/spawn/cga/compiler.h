@@ -33,6 +33,7 @@ private:
     std::vector<uint32_t> selectors; // of its parts, in the order of a walk
     Context context;
     uint32_t label;
+    const Expression* perEdge = nullptr; // a value that is worked out for each edge: a chunk behind the parts'
   };
 
   // compile.cpp
@@ -74,7 +75,7 @@ private:
   void checkCount(const std::string& file, Place place, std::string_view name, size_t count, size_t least, size_t most);
   void parts(const PendingPart& pending);
   void table(const std::vector<Part>& parts, const PendingPart& pending, size_t& selector, uint32_t label,
-             std::vector<std::pair<const Body*, uint32_t>>& bodies);
+             const uint32_t* perEdge, std::vector<std::pair<const Body*, uint32_t>>& bodies);
   void selectors(const std::vector<Part>& parts, const Context& context, bool selectorFirst, uint32_t& count,
                  std::vector<uint32_t>& numbers);
 

@@ -57,6 +57,7 @@ void append(Derivation& all, Derivation&& part, const std::vector<uint32_t>& pla
   all.shapes += part.shapes;
   all.triangles += part.triangles;
   all.depth = std::max(all.depth, part.depth);
+  all.work = std::max(all.work, part.work);
 }
 
 Derivation derive(const Program& program, const std::vector<Axiom>& axioms, const DeriveOptions& options,

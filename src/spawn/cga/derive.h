@@ -34,6 +34,8 @@ struct Axiom {
   std::string name;
   std::string where; ///< for messages about it: "lots.json:3:5"
   std::vector<AttributeValue> attributes;
+  /// Of the street beside each edge of the polygon, 0: none; empty: nothing is known of streets.
+  std::vector<float> streetWidths;
 };
 
 /// A file's triangles for i(): positions and indices.
@@ -47,6 +49,10 @@ struct DeriveOptions {
   uint64_t maxShapes = 4'000'000;      ///< of one axiom
   uint32_t maxFunctionDepth = 512;     ///< functions that call one another
   uint32_t maxInstructions = 1u << 24; ///< of one rule
+  uint32_t maxFaces = 250'000;         ///< of one shape
+  uint32_t maxVertices = 1'000'000;    ///< of one shape
+  uint32_t maxGeometryMiB = 2048;      ///< of all meshes that one axiom makes, and of the triangles that are kept
+  uint64_t maxWork = 1'000'000'000;    ///< of one axiom's geometry: words written and corners looked at
   uint32_t threads = 0;                ///< 0: as many as the machine has
   bool keepTriangles = true;           ///< else they are only counted
   std::vector<AttributeValue> attributes;
@@ -84,6 +90,7 @@ struct Derivation {
   uint64_t shapes = 0;    ///< that rules were run on
   uint64_t triangles = 0; ///< of all leaves
   uint32_t depth = 0;     ///< of the deepest shape
+  uint64_t work = 0;      ///< steps of the axiom that needed most, of DeriveOptions::maxWork
   static constexpr size_t kMostPrints = 1000;
 };
 

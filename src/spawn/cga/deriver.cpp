@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace gpgp::spawn::cga {
 
 namespace {
-constexpr uint32_t kFirstPoolWords = 1u << 18, kMostPoolWords = 1u << 28;
+constexpr uint32_t kFirstPoolWords = 1u << 18, kMostPoolWords = 0xfff00000u, kMostWorkWords = 1u << 24;
 } // namespace
 
 Deriver::Deriver(const Program& program, const DeriveOptions& options)
@@ -52,10 +53,15 @@ void Deriver::run(const Axiom& axiom, uint32_t number, Derivation& result, Messa
     arrays_.clear();
     arrayValues_ = 0;
     labels_.clear();
+    tagNames_.clear();
+    stackBase_ = nested_ = 0;
     reports_.clear();
     prints_.clear();
     assetForms_.clear();
     pool_.clear();
+    pool_.steps = 0;
+    pool_.mostSteps = options_.maxWork;
+    operation_ = {};
     boxes_.write(pool_);
     const size_t firstLeaf = result.leaves.size(), firstVertex = result.vertices.size();
     const size_t firstIndex = result.indices.size();
@@ -67,15 +73,19 @@ void Deriver::run(const Axiom& axiom, uint32_t number, Derivation& result, Messa
     result.leaves.resize(firstLeaf);
     result.vertices.resize(firstVertex);
     result.indices.resize(firstIndex);
-    if (poolWords_ >= kMostPoolWords) {
-      fail("the geometry of one axiom needs more than " + std::to_string(kMostPoolWords / (1u << 18)) + " MiB");
+    const uint32_t most = static_cast<uint32_t>(
+        std::clamp<uint64_t>(uint64_t{options_.maxGeometryMiB} << 18, kFirstPoolWords, kMostPoolWords));
+    if (poolWords_ >= most) {
+      fail(ruleAndOperation() + ": the meshes of one axiom need more than " + std::to_string(most >> 18) +
+           " MiB; --max-geometry allows more");
       return;
     }
-    poolWords_ *= 4;
-    pool_ = GeometryPool(poolWords_, std::min(poolWords_, 1u << 24));
+    poolWords_ = static_cast<uint32_t>(std::min<uint64_t>(4ull * poolWords_, most));
+    pool_ = GeometryPool(poolWords_, std::min(poolWords_, kMostWorkWords));
   }
   result.shapes += shapes_;
   result.depth = std::max(result.depth, deepest_);
+  result.work = std::max<uint64_t>(result.work, pool_.steps);
   for (const auto& [name, report] : reports_) {
     Report& to = result.reports[strings_.text(name)];
     to.least = to.count ? std::min(to.least, report.least) : report.least;
@@ -109,6 +119,9 @@ bool Deriver::start(const Axiom& axiom, uint32_t number) {
       return false;
     }
   }
+  shape_ = shape;
+  if (!axiom.streetWidths.empty()) tagStreets(axiom);
+  shape.form = shape_.form;
   start_ = shape.form;
   shape.key = uvec2(mixBits(axiom.seed), mixBits(axiom.seed ^ 0x9e3779b9u));
   (void)number;
@@ -195,8 +208,8 @@ bool Deriver::runRule(const Shape& shape) {
   ruleScope_ = shape_.form.scope;
   made_ = hasHull_ = false;
   states_.clear();
-  for (uint32_t i = 0; i < shape.count; ++i) stack_[i] = queueValues_[shape.first + i];
-  const uint32_t how = cgaRun(chunk_, 0);
+  for (uint32_t i = 0; i < shape.count; ++i) stack_[stackBase_ + i] = queueValues_[shape.first + i];
+  const uint32_t how = cgaRun(chunk_, stackBase_);
   if (how == kCgaDone) return true;
   if (stopped_ || noRoom_) return false;
   const std::string rule = "rule '" + program_.strings[words_[chunk_]] + "'";
@@ -225,6 +238,31 @@ bool Deriver::enters(uint32_t chunk, uint32_t depth) {
     return false;
   }
   return true;
+}
+
+std::string Deriver::ruleAndOperation() const {
+  if (!chunk_) return "drawing";
+  std::string text = "rule '" + program_.strings[words_[chunk_]] + "'";
+  if (!operation_.empty()) text.append(", '").append(operation_).append("'");
+  return text;
+}
+
+bool Deriver::isWithin(const Form& form) {
+  const uint32_t faces = meshFaces(pool_, form.mesh), vertices = meshVertices(pool_, form.mesh);
+  if (faces <= options_.maxFaces && vertices <= options_.maxVertices) return true;
+  const bool isFaces = faces > options_.maxFaces;
+  fail(ruleAndOperation() + ": a shape has " + std::to_string(isFaces ? faces : vertices) +
+       (isFaces ? " faces, more than " : " vertices, more than ") +
+       std::to_string(isFaces ? options_.maxFaces : options_.maxVertices) +
+       (isFaces ? "; --max-faces allows more" : "; --max-vertices allows more"));
+  return false;
+}
+
+bool Deriver::works(uint64_t steps) {
+  if (countSteps(pool_, steps)) return true;
+  fail(ruleAndOperation() + ": the geometry of one axiom takes more than " +
+       std::to_string(options_.maxWork / 1'000'000) + " million steps; --max-work allows more");
+  return false;
 }
 
 CgaValue Deriver::cgaAttribute(uint32_t slot) const {
@@ -265,6 +303,7 @@ bool Deriver::addChild(Shape& shape, uint32_t body, uint32_t base) {
   shape.count = words_[body + kCgaChunkParameters];
   for (uint32_t i = 0; i < shape.count; ++i) nextValues_.push_back(stack_[base + i]);
   made_ = true;
+  if (!isWithin(shape.form) || !works()) return false;
   if (shapes_ + next_.size() > options_.maxShapes) {
     fail("an axiom has more than " + std::to_string(options_.maxShapes) + " shapes; --max-shapes allows more");
     return false;
@@ -343,6 +382,7 @@ void Deriver::writeTriangles(const Form& form, Derivation& result) {
   std::vector<OutputVertex> vertices;
   std::vector<uint32_t> indices;
   const Status status = triangulate(pool_, form, vertices, indices);
+  if (!works()) return;
   if (status == kGeometryNoRoom) noRoom_ = true;
   if (status != kGeometryOk && status != kGeometryEmpty && status != kGeometryNoRoom)
     warn("triangulate", "a shape is not drawn: " + std::string(describeStatus(status)));
@@ -356,6 +396,11 @@ void Deriver::writeTriangles(const Form& form, Derivation& result) {
 void Deriver::writeLeaves(Derivation& result, uint32_t number, size_t firstLeaf) {
   (void)firstLeaf;
   const uint64_t before = result.triangles;
+  const size_t firstVertex = result.vertices.size(), firstIndex = result.indices.size();
+  chunk_ = at_ = 0; // no rule runs
+  // What was derived before a limit is kept, and has a limit of its own.
+  const bool wasStopped = std::exchange(stopped_, false);
+  pool_.mostSteps = pool_.steps + options_.maxWork;
   for (const Shape& shape : leaves_) {
     Leaf leaf;
     leaf.name = shape.chunk;
@@ -366,11 +411,18 @@ void Deriver::writeLeaves(Derivation& result, uint32_t number, size_t firstLeaf)
     if (shape.form.mesh) writeTriangles(shape.form, result);
     leaf.indexCount = static_cast<uint32_t>(result.indices.size()) - leaf.firstIndex;
     result.leaves.push_back(leaf);
+    const uint64_t bytes = sizeof(Vertex) * (result.vertices.size() - firstVertex) +
+                           sizeof(uint32_t) * (result.indices.size() - firstIndex);
+    if (bytes > uint64_t{options_.maxGeometryMiB} << 20)
+      fail("the triangles of one axiom need more than " + std::to_string(options_.maxGeometryMiB) +
+           " MiB; --max-geometry allows more");
+    if (stopped_) break;
     if (noRoom_) {
       result.triangles = before;
       return;
     }
   }
+  stopped_ = stopped_ || wasStopped;
   // Strings of the program keep their numbers, those that were made get new ones.
   std::unordered_map<uint32_t, uint32_t> made;
   const auto named = [&](uint32_t& name) {

@@ -112,6 +112,9 @@ private:
   void warn(const std::string& kind, const std::string& text);
   void warnAt(uint32_t at, bool isError, const std::string& kind, const std::string& text);
   bool enters(uint32_t chunk, uint32_t depth);
+  bool isWithin(const Form& form);      ///< a shape's faces and vertices, within the limits
+  bool works(uint64_t steps = 0);       ///< adds to the work that was done, and whether some is left
+  std::string ruleAndOperation() const; ///< that run, for messages
   void addLeaf(uint32_t name);
   void writeLeaves(Derivation& result, uint32_t number, size_t firstLeaf);
   void writeTriangles(const Form& form, Derivation& result);
@@ -150,9 +153,25 @@ private:
   bool wings(float front, float right, float back, float left, const Arguments& a, uint32_t table, uint32_t base);
   bool shapeAndRemainder(const Form& inner, const Form& rest, const Arguments& a, uint32_t table, uint32_t base);
   bool setbackBy(const std::vector<float>& distances, const Arguments& a, uint32_t table, uint32_t base);
+  bool setbackEach(bool isArray, const std::vector<float>& each, const Arguments& a, uint32_t table, uint32_t base);
+  bool compMaterial(const Arguments& a, uint32_t table, uint32_t base);
   bool splitUv(const Arguments& a, uint32_t table, uint32_t base);
-  bool selects(std::string_view selector, Component kind, uint32_t index, uint32_t count, const CgaValue& value);
+  bool selects(std::string_view selector, const Components* components, uint32_t index, uint32_t count,
+               const CgaValue& value);
   uint32_t uvSet(const CgaValue& v);
+  void tagStreets(const Axiom& axiom);
+  uint32_t tagBits(std::string_view query) const; ///< of the names that a query matches
+  bool tagNames(const Arguments& a, uint32_t set, uint32_t clear);
+  bool hasTags(const Arguments& a);
+  Form* assetForm(const std::string& path, std::string& why); ///< none: why not, or there is no room
+
+  // --- operations_inline.cpp ---
+  /// Derives a part of a block at once from the shape that runs; a value behind the block's is the first free one.
+  bool deriveNow(uint32_t body, uint32_t base, uint32_t top, std::vector<Shape>& leaves);
+  /// The shape that runs becomes what leaves are together.
+  bool gather(const std::vector<Shape>& leaves, bool unify, const char* what);
+  bool combineBy(Boolean what, const Arguments& a, uint32_t table, uint32_t base);
+  uint32_t topOf(const Arguments& a) const { return static_cast<uint32_t>(a.values - stack_.data()) + a.count; }
 
   // Functions, by GPGP_CGA_FUNCTIONS.
 #define GPGP_CGA_DECLARE(name, least, most) CgaValue name##_(const Arguments& a);
@@ -174,6 +193,7 @@ private:
   static constexpr uint32_t kStackSize = 8192;
   static constexpr uint32_t kMostStates = 64; ///< [ in [
   static constexpr uint32_t kLongestChain = 24;
+  static constexpr uint32_t kMostNested = 32; ///< derivations within rules
 
   const Program& program_;
   const DeriveOptions& options_;
@@ -189,6 +209,7 @@ private:
   bool made_ = false;  // whether anything came of it
   uint32_t chunk_ = 0; // that runs
   uint32_t at_ = 0;
+  std::string_view operation_; // that runs
   std::array<CgaValue, kStackSize> stack_;
   std::vector<uint32_t> frames_;
   std::vector<Shape> states_;
@@ -202,6 +223,7 @@ private:
   std::vector<ArrayValue> arrays_;
   size_t arrayValues_ = 0; ///< of all arrays
   std::vector<Labelled> labels_;
+  std::vector<uint32_t> tagNames_;               ///< strings, by their bit from kTagUser on
   std::unordered_map<uint32_t, Report> reports_; // by string
   std::vector<uint32_t> prints_;
   std::string scratch_; // of text()
@@ -214,6 +236,7 @@ private:
   Form start_; // of the axiom
   uint64_t shapes_ = 0, printCount_ = 0;
   uint32_t deepest_ = 0;
+  uint32_t stackBase_ = 0, nested_ = 0; // of a derivation within a rule
   bool noRoom_ = false, stopped_ = false, overLimit_ = false;
 };
 

@@ -237,6 +237,20 @@ CgaValue Deriver::floatArray_(const Arguments& a) { return filled(kCgaFloat, a);
 CgaValue Deriver::boolArray_(const Arguments& a) { return filled(kCgaBool, a); }
 CgaValue Deriver::stringArray_(const Arguments& a) { return filled(kCgaString, a); }
 
+/// Extents of an asset, and where its lowest corner is, metres.
+CgaValue Deriver::assetInfo_(const Arguments& a) {
+  const std::string path = text(a[0]);
+  const std::string_view which = word(a[1]);
+  std::string why;
+  const Form* asset = assetForm(path, why);
+  if (!asset) {
+    warn("asset " + path, "nothing is known of the asset \"" + path + "\": " + why);
+    return floatValue(0);
+  }
+  const int axis = which.ends_with('y') ? 1 : which.ends_with('z') ? 2 : 0;
+  return floatValue(which.starts_with('t') ? asset->scope.origin[axis] : asset->scope.size[axis]);
+}
+
 CgaValue Deriver::clamp_(const Arguments& a) {
   const float low = number(a[1]), high = number(a[2]);
   return floatValue(std::max(low, std::min(number(a[0]), high)));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace gpgp::spawn::cga {
 
@@ -12,6 +13,11 @@ CgaValue Deriver::cgaFunction(uint32_t function, uint32_t first, uint32_t count)
       GPGP_CGA_FUNCTIONS(GPGP_CGA_ROW)
 #undef GPGP_CGA_ROW
   };
+  // Those that ask the shape look at all of it.
+  if (function >= static_cast<uint32_t>(Function::geometry_area_) &&
+      function <= static_cast<uint32_t>(Function::contextCompare_))
+    works(meshCorners(pool_, shape_.form.mesh));
+  if (stopped_) return floatValue(0);
   return (this->*kFunctions[function])({&stack_[first], count});
 }
 
@@ -22,10 +28,12 @@ CgaValue Deriver::geometry_area_(const Arguments& a) {
   if (form.mesh == 0) return floatValue(0);
   if (a.count) { // of the faces that a selector names
     const bool isBox = boxes_.is(form);
-    const uint32_t faces = isBox ? boxes_.faces(form) : faceCount(pool_, form);
+    std::optional<Components> components;
+    if (!isBox) components.emplace(pool_, form, Component::Faces);
+    const uint32_t faces = isBox ? boxes_.faces(form) : components->count();
     float sum = 0;
     for (uint32_t i = 0; i < faces; ++i)
-      if (selects(word(a[0]), Component::Faces, i, faces, a[0])) sum += faceArea(pool_, form, i);
+      if (selects(word(a[0]), components ? &*components : nullptr, i, faces, a[0])) sum += faceArea(pool_, form, i);
     return floatValue(sum);
   }
   return floatValue(boxes_.is(form) ? boxes_.area(form) : area(pool_, form));
@@ -82,12 +90,12 @@ CgaValue Deriver::geometry_isOriented_(const Arguments&) { return cgaBoolValue(t
 CgaValue Deriver::geometry_isInstanced_(const Arguments&) { return cgaBoolValue(false); }
 
 CgaValue Deriver::geometry_boundaryLength_(const Arguments&) {
-  const uint32_t edges = componentCount(pool_, shape_.form, Component::Edges);
+  const Components edges(pool_, shape_.form, Component::Edges);
   float sum = 0;
-  for (uint32_t i = 0; i < edges; ++i) {
-    if (!matches(pool_, shape_.form, Component::Edges, i, Selector::Border, {})) continue;
+  for (uint32_t i = 0; i < edges.count(); ++i) {
+    if (!edges.matches(i, Selector::Border, {})) continue;
     Form edge;
-    if (toComponent(pool_, shape_.form, Component::Edges, i, edge) == kGeometryOk) sum += edge.scope.size.x;
+    if (edges.take(i, edge) == kGeometryOk) sum += edge.scope.size.x;
   }
   return floatValue(sum);
 }
@@ -152,12 +160,6 @@ CgaValue Deriver::geometry_hasUVs_(const Arguments& a) {
   const uint32_t set = a.count ? uvSet(a[0]) : 0;
   return cgaBoolValue(((meshUvSets(pool_, shape_.form.mesh) >> set) & 1u) != 0);
 }
-CgaValue Deriver::geometry_isTagged_(const Arguments& a) { return isTagged_(a); }
-CgaValue Deriver::isTagged_(const Arguments&) {
-  warn("isTagged", "tags are not supported; nothing is tagged");
-  return cgaBoolValue(false);
-}
-
 // ---------------------------------------------------------------- scope, pivot, places
 
 vec3 Deriver::euler(const vec3& x, const vec3& y, const vec3& z) const {
@@ -274,9 +276,13 @@ CgaValue Deriver::context(const Arguments& a, bool (*query)(const Hull&, const H
     if (a[i].type == kCgaString) label = &a[i];
   }
   if (!label) warn("context", "context queries see the shapes that label() named, of the same axiom");
+  works(labels_.size());
   for (const Labelled& other : labels_) {
     if (other.key == shape_.key || (label && other.label != label->bits)) continue;
-    if (mayMeet(other.hull.bounds, ownHull().bounds, 1e-3f) && query(ownHull(), other.hull)) return cgaBoolValue(true);
+    if (!mayMeet(other.hull.bounds, ownHull().bounds, 1e-3f)) continue;
+    if (!works(ownHull().sizes.size() * other.hull.points.size() + ownHull().points.size() * other.hull.sizes.size()))
+      break;
+    if (query(ownHull(), other.hull)) return cgaBoolValue(true);
   }
   return cgaBoolValue(false);
 }
@@ -289,8 +295,11 @@ CgaValue Deriver::minimumDistance_(const Arguments& a) {
   float least = kLargest;
   const CgaValue& label = a[a.count - 1];
   for (const Labelled& other : labels_)
-    if (other.key != shape_.key && other.label == label.bits)
+    if (other.key != shape_.key && other.label == label.bits) {
+      if (!works(ownHull().sizes.size() * other.hull.points.size() + ownHull().points.size() * other.hull.sizes.size()))
+        break;
       least = std::min(least, minimumDistance(ownHull(), other.hull));
+    }
   return floatValue(least);
 }
 

@@ -13,13 +13,19 @@ namespace gpgp::spawn::cga {
   X(extrude, 1, 3, none)                                                                                               \
   X(comp, 1, 1, parts)                                                                                                 \
   X(split, 1, 3, parts)                                                                                                \
+  X(splitArea, 1, 2, parts)                                                                                            \
   X(setback, 1, 2, parts)                                                                                              \
+  X(setbackPerEdge, 1, 2, parts)                                                                                       \
   X(setbackToArea, 1, 2, parts)                                                                                        \
   X(shapeL, 2, 2, parts)                                                                                               \
   X(shapeU, 3, 3, parts)                                                                                               \
   X(shapeO, 4, 4, parts)                                                                                               \
   X(innerRectangle, 1, 1, parts)                                                                                       \
   X(scatter, 3, 6, body)                                                                                               \
+  X(inline, 0, 1, body)                                                                                                \
+  X(union, 0, 1, body)                                                                                                 \
+  X(subtract, 0, 1, body)                                                                                              \
+  X(intersect, 0, 1, body)                                                                                             \
   X(offset, 1, 2, none)                                                                                                \
   X(innerRect, 0, 0, none)                                                                                             \
   X(taper, 1, 1, none)                                                                                                 \
@@ -48,6 +54,7 @@ namespace gpgp::spawn::cga {
   X(print, 1, 1, none)                                                                                                 \
   X(label, 1, 1, none)                                                                                                 \
   X(i, 1, 4, none)                                                                                                     \
+  X(insertAlongUV, 3, 5, none)                                                                                         \
   X(primitiveQuad, 0, 2, none)                                                                                         \
   X(primitiveCube, 0, 3, none)                                                                                         \
   X(primitiveDisk, 0, 2, none)                                                                                         \
@@ -71,8 +78,8 @@ namespace gpgp::spawn::cga {
   X(normalizeUV, 3, 3, none)                                                                                           \
   X(copyUV, 2, 2, none)                                                                                                \
   X(deleteUV, 1, 1, none)                                                                                              \
-  X(tag, 1, 3, none)                                                                                                   \
-  X(deleteTags, 0, 3, none)
+  X(tag, 1, 2, none)                                                                                                   \
+  X(deleteTags, 0, 2, none)
 
 // Set by set(name, value) although they are no attributes of the file.
 #define GPGP_CGA_SETTABLE(X)                                                                                           \
@@ -159,6 +166,7 @@ namespace gpgp::spawn::cga {
   X(colorRGBOToHex, 4, 4)                                                                                              \
   X(colorRamp, 2, 2)                                                                                                   \
   X(clamp, 3, 3)                                                                                                       \
+  X(assetInfo, 2, 2)                                                                                                   \
   X(printed, 1, 1)                                                                                                     \
   X(convert, 5, 7)                                                                                                     \
   X(geometry_area, 0, 1)                                                                                               \
@@ -184,6 +192,8 @@ namespace gpgp::spawn::cga {
   X(geometry_vMax, 0, 1)                                                                                               \
   X(geometry_hasUVs, 0, 1)                                                                                             \
   X(geometry_isTagged, 1, 2)                                                                                           \
+  X(geometry_hasTags, 0, 2)                                                                                            \
+  X(geometry_tags, 0, 2)                                                                                               \
   X(isTagged, 1, 2)                                                                                                    \
   X(inside, 0, 2)                                                                                                      \
   X(overlaps, 0, 2)                                                                                                    \

@@ -85,6 +85,7 @@ bool Deriver::check(Status status, const char* what) {
     shape_.form.mesh = 0;
     return true;
   }
+  if (!works()) return false;
   if (status == kGeometryNoRoom ||
       (status == kGeometryTooLarge && pool_.workNeeded > pool_.workCapacity && poolWords_ < (1u << 26))) {
     noRoom_ = true; // again, with more
@@ -131,9 +132,12 @@ bool Deriver::cgaOperation(uint32_t operation, uint32_t first, uint32_t count) {
 #undef GPGP_CGA_body
   };
   const Arguments arguments{&stack_[first], count};
+  if (stopped_) return false;
   hasHull_ = false;
   if (operation >= std::size(kFunctions)) return setAttributeOfShape(static_cast<Operation>(operation), arguments[0]);
-  return (this->*kFunctions[operation])(arguments);
+  operation_ = operationInfo(static_cast<Operation>(operation)).name;
+  const uint32_t mesh = shape_.form.mesh;
+  return (this->*kFunctions[operation])(arguments) && (shape_.form.mesh == mesh || (isWithin(shape_.form) && works()));
 }
 
 bool Deriver::cgaBlock(uint32_t operation, uint32_t first, uint32_t count, uint32_t table, uint32_t base) {
@@ -148,7 +152,11 @@ bool Deriver::cgaBlock(uint32_t operation, uint32_t first, uint32_t count, uint3
 #undef GPGP_CGA_parts
 #undef GPGP_CGA_body
   };
-  made_ = true; // though it may make nothing
+  if (stopped_) return false;
+  const bool goesOn = operation >= static_cast<uint32_t>(Operation::inline_) &&
+                      operation <= static_cast<uint32_t>(Operation::intersect_);
+  made_ = made_ || !goesOn; // though it may make nothing
+  operation_ = operationInfo(static_cast<Operation>(operation)).name;
   return (this->*kFunctions[operation])({&stack_[first], count}, table, base);
 }
 
@@ -271,9 +279,19 @@ bool Deriver::mirror_(const Arguments& a) {
   return boxes_.is(shape_.form) || check(mirror(pool_, shape_.form, bits), "mirror");
 }
 
+/// The geometry stays where it is. Scopes are right-handed, so that two axes turn round together.
 bool Deriver::mirrorScope_(const Arguments& a) {
-  // Scopes are right-handed; two mirrored axes are a rotation, of one the geometry is mirrored instead.
-  return mirror_(a);
+  const bool x = cgaIsTrue(a[0]), y = cgaIsTrue(a[1]), z = cgaIsTrue(a[2]);
+  if (!x && !y && !z) return true;
+  if (x + y + z != 2) {
+    warn("mirrorScope", "mirrorScope of one axis or three makes a left-handed scope, which is not supported; the scope "
+                        "stays as it was");
+    return true;
+  }
+  const Scope& s = shape_.form.scope;
+  const auto back = [](const vec3& axis, bool turns) { return turns ? axis * -1.0f : axis; };
+  const Axes to{back(s.axisX, x), back(s.axisY, y), back(s.axisZ, z)};
+  return shape_.form.mesh == 0 || check(alignScope(pool_, shape_.form, to), "mirrorScope");
 }
 
 bool Deriver::setPivot_(const Arguments& a) {
@@ -505,28 +523,64 @@ bool Deriver::i_(const Arguments& a) {
     if (name.starts_with("cone")) return primitive(Primitive::Cone, 32, 2, vec3(0));
     if (name.starts_with("cyl")) return primitive(Primitive::Cylinder, 32, 2, vec3(0));
   }
-  const auto box = [&](const std::string& why) {
-    warn("asset " + path, "the asset \"" + path + "\" is drawn as a box: " + why);
-    return primitive(Primitive::Cube, 4, 2, vec3(0));
-  };
+  std::string why;
+  Form* asset = assetForm(path, why);
+  if (asset) return check(insertForm(pool_, shape_.form, *asset), "i");
+  if (noRoom_ || stopped_) return false;
+  warn("asset " + path, "the asset \"" + path + "\" is drawn as a box: " + why);
+  return primitive(Primitive::Cube, 4, 2, vec3(0));
+}
+
+/// In the pool, once for each axiom.
+Form* Deriver::assetForm(const std::string& path, std::string& why) {
   const auto [found, isNew] = assets_.try_emplace(path);
+  why = "there is no such file";
   if (isNew) {
     const std::string file = findFile(path);
-    std::string why = "there is no such file";
     Asset asset;
     if (!file.empty() && options_.loadAsset && options_.loadAsset(file, asset, why) && !asset.indices.empty())
       found->second = std::make_unique<Asset>(std::move(asset));
-    else
-      return box(file.empty() ? "there is no such file" : why);
   }
-  if (!found->second) return box("there is no such file");
+  if (!found->second) return nullptr;
   const auto [form, isNewForm] = assetForms_.try_emplace(path);
   if (isNewForm) {
     const std::vector<uint32_t> sizes(found->second->indices.size() / 3, 3);
-    if (!check(makeMesh(pool_, found->second->positions, found->second->indices, sizes, {}, form->second), "i"))
-      return false;
+    const Status status = makeMesh(pool_, found->second->positions, found->second->indices, sizes, {}, form->second);
+    if (status != kGeometryOk) {
+      assetForms_.erase(path);
+      why = describeStatus(status);
+      if (status == kGeometryNoRoom || (status == kGeometryTooLarge && poolWords_ < (1u << 26))) noRoom_ = true;
+      return nullptr;
+    }
   }
-  return check(insertForm(pool_, shape_.form, form->second), "i");
+  return &form->second;
+}
+
+bool Deriver::insertAlongUV_(const Arguments& a) {
+  if (shape_.form.mesh == 0) return true;
+  const std::string path = text(a[1]);
+  std::string why;
+  Form cube;
+  const Form* asset = nullptr;
+  if (path.starts_with("builtin:cube")) {
+    cube = boxes_.make({vec3(0), vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), vec3(1)}, boxes_.box);
+    asset = &cube;
+  } else {
+    asset = assetForm(path, why);
+  }
+  if (!asset) {
+    if (noRoom_ || stopped_) return false;
+    warn("asset " + path, "the asset \"" + path + "\" is not inserted: " + why);
+    return true;
+  }
+  const uint32_t set = uvSet(a[0]);
+  if (((meshUvSets(pool_, shape_.form.mesh) >> set) & 1u) == 0) {
+    warn("insertAlongUV", "insertAlongUV: the shape has no texture coordinates of set " + std::to_string(set));
+    return true;
+  }
+  const BendAlong along = a.count > 3 && word(a[3]) == "vertex.normal" ? BendAlong::VertexNormal : BendAlong::ScopeY;
+  const bool keep = a.count > 4 && word(a[4]) == "keepPosition";
+  return check(insertAlongUv(pool_, shape_.form, set, *asset, number(a[2]), along, keep), "insertAlongUV");
 }
 
 } // namespace gpgp::spawn::cga

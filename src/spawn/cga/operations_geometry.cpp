@@ -188,14 +188,7 @@ bool Deriver::resetGeometry_(const Arguments&) {
   return true;
 }
 
-// ---------------------------------------------------------------- tags, labels
-
-bool Deriver::tag_(const Arguments&) {
-  warn("tag", "'tag' is not supported, and does nothing");
-  return true;
-}
-
-bool Deriver::deleteTags_(const Arguments&) { return true; }
+// ---------------------------------------------------------------- labels
 
 bool Deriver::label_(const Arguments& a) {
   labels_.push_back({strings_.number(text(a[0])), makeHull(pool_, shape_.form), shape_.key});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace gpgp::spawn::cga {
 
@@ -93,6 +94,7 @@ bool Deriver::split_(const Arguments& a, uint32_t table, uint32_t base) {
   }
   const bool isBox = boxes_.is(whole);
   for (uint32_t i = 0; i < pieces.size(); ++i) {
+    if (!works(1)) return false;
     const Piece& p = pieces[i];
     Form form;
     if (isBox) {
@@ -113,6 +115,45 @@ bool Deriver::split_(const Arguments& a, uint32_t table, uint32_t base) {
     part.splitIndex = i;
     part.splitTotal = static_cast<uint32_t>(pieces.size());
     if (!addChild(part, p.body, base)) return false;
+  }
+  return true;
+}
+
+bool Deriver::splitArea_(const Arguments& a, uint32_t table, uint32_t base) {
+  const std::string_view axisName = word(a[0]);
+  const uint32_t axis = axisName == "y" ? 1u : axisName == "z" ? 2u : 0u;
+  const bool adjust = a.count < 2 || word(a[1]) != "noAdjust";
+  const Form whole = shape_.form;
+  if (whole.mesh == 0) return true;
+  const float all = boxes_.is(whole) ? boxes_.area(whole) : area(pool_, whole);
+  std::vector<Piece> pieces;
+  if (!layOut(readParts(words_, table, a.values, all), all, kMostPieces, pieces)) {
+    fail("a split has more than " + std::to_string(kMostPieces) + " parts");
+    return false;
+  }
+  std::vector<double> areas;
+  for (const Piece& p : pieces) areas.insert(areas.end(), {p.from, p.to >= all * 0.999999f ? all * 2.0 : p.to});
+  const std::vector<float> places = placesOfAreas(pool_, whole, axis, areas);
+  for (uint32_t i = 0; i < pieces.size(); ++i) {
+    if (!works(1)) return false;
+    const float from = places[2 * i], to = places[2 * i + 1];
+    if (!(to > from)) continue;
+    Form form;
+    if (boxes_.is(whole)) {
+      form = sliceBox(whole, axis, from, to);
+    } else {
+      const Status status = slice(pool_, whole, axis, from, to, adjust, form);
+      if (status == kGeometryEmpty) continue;
+      if (status != kGeometryOk) {
+        if (!check(status, "splitArea")) return false;
+        continue;
+      }
+    }
+    Shape& part = child();
+    part.form = form;
+    part.splitIndex = i;
+    part.splitTotal = static_cast<uint32_t>(pieces.size());
+    if (!addChild(part, pieces[i].body, base)) return false;
   }
   return true;
 }
@@ -147,6 +188,7 @@ bool Deriver::splitUv(const Arguments& a, uint32_t table, uint32_t base) {
   }
   const Form whole = shape_.form;
   for (uint32_t i = 0; i < pieces.size(); ++i) {
+    if (!works(1)) return false;
     Form form;
     const Status status =
         sliceUv(pool_, whole, set, axis, begin + pieces[i].from / scale, begin + pieces[i].to / scale, form);
@@ -167,28 +209,66 @@ bool Deriver::splitUv(const Arguments& a, uint32_t table, uint32_t base) {
 
 // ---------------------------------------------------------------- components
 
-bool Deriver::selects(std::string_view selector, Component kind, uint32_t index, uint32_t count,
+/// components: none: the faces of a box.
+bool Deriver::selects(std::string_view selector, const Components* components, uint32_t index, uint32_t count,
                       const CgaValue& value) {
   if (value.type == kCgaFloat) {
     const float wanted = number(value);
     return static_cast<float>(index) == (wanted < 0 ? wanted + static_cast<float>(count) : wanted);
   }
   if (value.type == kCgaBool) return value.bits != 0;
-  if (selector.starts_with("street."))
-    warn("street", "there are no streets; '" + std::string(selector) + "' is taken as 'object." +
+  const bool isStreet = selector.starts_with("street.");
+  if (isStreet && axiom_->streetWidths.empty())
+    warn("street", "nothing is known of streets (streetWidth); '" + std::string(selector) + "' is taken as 'object." +
                        std::string(selector.substr(7)) + "'");
-  const Selection what = selectorOf(selector);
+  if (selector.starts_with("tag:")) {
+    const uint32_t bits = tagBits(selector.substr(5));
+    if (!components) return false; // a box has no tags
+    return (selector[4] == 'e' ? components->tagsOfEdges(index) & bits : components->tags(index) & bits) != 0;
+  }
+  Selection what = selectorOf(selector);
   if (!what.known) {
     warn("selector " + std::string(selector), std::string("'").append(selector) + "' selects no components");
     return false;
   }
-  const Axes system = axes(selector.starts_with("street.") ? "object" : selector);
-  if (boxes_.is(shape_.form) && kind == Component::Faces) {
+  const Axes system = axes(isStreet ? "object" : selector);
+  if (isStreet && !axiom_->streetWidths.empty()) {
+    constexpr std::pair<Selector, Selector> kStreets[] = {{Selector::Front, Selector::StreetFront},
+                                                          {Selector::Back, Selector::StreetBack},
+                                                          {Selector::Left, Selector::StreetLeft},
+                                                          {Selector::Right, Selector::StreetRight},
+                                                          {Selector::Side, Selector::StreetSide}};
+    for (const auto& [side, street] : kStreets)
+      if (what.selector == side) return components && components->matches(index, street, system);
+  }
+  if (!components) {
     if (what.selector == Selector::Border) return shape_.form.mesh != boxes_.box;
     if (what.selector == Selector::Inside) return shape_.form.mesh == boxes_.box;
     return matchesNormal(boxes_.normal(shape_.form, index), what.selector, system);
   }
-  return matches(pool_, shape_.form, kind, index, what.selector, system);
+  return components->matches(index, what.selector, system);
+}
+
+/// A shape has one material, so that it is itself the one component.
+bool Deriver::compMaterial(const Arguments& a, uint32_t table, uint32_t base) {
+  for (uint32_t p = 0; p < words_[table]; ++p) {
+    const uint32_t record = words_[table + 1 + p];
+    const CgaValue& value = a.values[words_[record + kCgaPartSelector]];
+    const float index = value.type == kCgaFloat ? number(value) : -2.0f;
+    const bool isIt = index == 0 || index == -1 || (value.type == kCgaBool && value.bits) || word(value) == "all";
+    if (!isIt) {
+      if (value.type == kCgaWord)
+        warn("comp(m)",
+             "comp(m): a shape has one material, which 'all' and 0 select, and not '" + std::string(word(value)) + "'");
+      continue;
+    }
+    Shape& part = child();
+    part.compIndex = 0;
+    part.compTotal = 1;
+    part.compSelector = value.type == kCgaWord ? value.bits : strings_.number(text(value));
+    return addChild(part, words_[record + kCgaPartBody], base);
+  }
+  return true;
 }
 
 bool Deriver::comp_(const Arguments& a, uint32_t table, uint32_t base) {
@@ -199,13 +279,12 @@ bool Deriver::comp_(const Arguments& a, uint32_t table, uint32_t base) {
   if (kindName == "v") kind = Component::Vertices;
   if (kindName == "g") kind = Component::Groups;
   if (kindName == "h") kind = Component::Holes;
-  if (kindName == "m") {
-    warn("comp(m)", "components by material are not supported; comp(m) takes groups");
-    kind = Component::Groups;
-  }
   if (shape_.form.mesh == 0) return true;
+  if (kindName == "m") return compMaterial(a, table, base);
   const bool isBox = boxes_.is(shape_.form) && kind == Component::Faces;
-  const uint32_t count = isBox ? boxes_.faces(shape_.form) : componentCount(pool_, shape_.form, kind);
+  std::optional<Components> components;
+  if (!isBox) components.emplace(pool_, shape_.form, kind);
+  const uint32_t count = isBox ? boxes_.faces(shape_.form) : components->count();
   const uint32_t parts = words_[table];
   // The first part that selects a component has it.
   std::vector<std::vector<uint32_t>> selected(parts);
@@ -213,7 +292,7 @@ bool Deriver::comp_(const Arguments& a, uint32_t table, uint32_t base) {
     for (uint32_t p = 0; p < parts; ++p) {
       const uint32_t record = words_[table + 1 + p];
       const CgaValue& value = a.values[words_[record + kCgaPartSelector]];
-      if (!selects(word(value), kind, i, count, value)) continue;
+      if (!selects(word(value), components ? &*components : nullptr, i, count, value)) continue;
       selected[p].push_back(i);
       break;
     }
@@ -231,7 +310,7 @@ bool Deriver::comp_(const Arguments& a, uint32_t table, uint32_t base) {
       else if (isBox)
         form = boxes_.face(shape_.form, selected[p][i]);
       else
-        status = toComponent(pool_, shape_.form, kind, selected[p][i], form);
+        status = components->take(selected[p][i], form);
       if (status == kGeometryEmpty) continue;
       if (status != kGeometryOk) {
         if (!check(status, "comp")) return false;
@@ -257,10 +336,12 @@ bool Deriver::setbackBy(const std::vector<float>& distances, const Arguments& a,
   Form remainder;
   const Status status = setback(pool_, shape_.form, distances, pieces, remainder);
   if (status != kGeometryOk && status != kGeometryEmpty) return check(status, "setback");
-  const uint32_t edges = static_cast<uint32_t>(pieces.size());
+  const Components components(pool_, shape_.form, Component::FaceEdges);
+  const uint32_t edges = components.count();
   std::vector<bool> taken(edges);
   for (uint32_t p = 0; p < words_[table]; ++p) {
     const uint32_t record = words_[table + 1 + p];
+    if (words_[record + kCgaPartSelector] == kCgaNoSelector) continue; // the distance of setbackPerEdge
     const CgaValue& value = a.values[words_[record + kCgaPartSelector]];
     const std::string_view selector = word(value);
     std::vector<Form> forms;
@@ -268,7 +349,7 @@ bool Deriver::setbackBy(const std::vector<float>& distances, const Arguments& a,
       if (remainder.mesh) forms.push_back(remainder);
     } else {
       for (uint32_t i = 0; i < edges; ++i) {
-        if (taken[i] || pieces[i].mesh == 0 || !selects(selector, Component::FaceEdges, i, edges, value)) continue;
+        if (taken[i] || pieces[i].mesh == 0 || !selects(selector, &components, i, edges, value)) continue;
         taken[i] = true;
         forms.push_back(pieces[i]);
       }
@@ -293,32 +374,85 @@ bool Deriver::setbackBy(const std::vector<float>& distances, const Arguments& a,
 
 bool Deriver::setback_(const Arguments& a, uint32_t table, uint32_t base) {
   if (shape_.form.mesh == 0) return true;
-  const float distance = number(a[0]);
-  const uint32_t edges = componentCount(pool_, shape_.form, Component::FaceEdges);
+  std::vector<float> each;
+  if (a[0].type == kCgaArray) {
+    for (const CgaValue& v : arrayOf(a[0]).values) each.push_back(number(v));
+  } else {
+    each.push_back(number(a[0]));
+  }
+  if (each.empty()) return true;
+  return setbackEach(a[0].type == kCgaArray, each, a, table, base);
+}
+
+/// each: a distance for each edge, in order, 0 for those that it does not reach; or one for all.
+bool Deriver::setbackEach(bool isArray, const std::vector<float>& each, const Arguments& a, uint32_t table,
+                          uint32_t base) {
+  const Components components(pool_, shape_.form, Component::FaceEdges);
+  const uint32_t edges = components.count();
   std::vector<float> distances(edges, 0.0f);
+  const auto distanceOf = [&](uint32_t i) { return !isArray ? each[0] : i < each.size() ? each[i] : 0.0f; };
   // An edge moves where a part other than the remainder selects it.
   bool any = false;
   for (uint32_t p = 0; p < words_[table]; ++p) {
-    const CgaValue& value = a.values[words_[words_[table + 1 + p] + kCgaPartSelector]];
-    if (word(value) == "remainder") continue;
+    const uint32_t selector = words_[words_[table + 1 + p] + kCgaPartSelector];
+    if (selector == kCgaNoSelector || word(a.values[selector]) == "remainder") continue;
     any = true;
     for (uint32_t i = 0; i < edges; ++i)
-      if (selects(word(value), Component::FaceEdges, i, edges, value)) distances[i] = distance;
+      if (selects(word(a.values[selector]), &components, i, edges, a.values[selector])) distances[i] = distanceOf(i);
   }
-  if (!any) distances.assign(edges, distance); // { remainder: ... } alone
+  for (uint32_t i = 0; i < edges && !any; ++i) distances[i] = distanceOf(i); // { remainder: ... } alone
   return setbackBy(distances, a, table, base);
+}
+
+/// The distance is worked out on each edge, as comp(fe) would make it.
+bool Deriver::setbackPerEdge_(const Arguments& a, uint32_t table, uint32_t base) {
+  if (shape_.form.mesh == 0) return true;
+  const uint32_t chunk = words_[words_[table + words_[table]] + kCgaPartBody], top = topOf(a);
+  const uint32_t count = words_[chunk + kCgaChunkParameters];
+  const Components components(pool_, shape_.form, Component::FaceEdges);
+  const Shape whole = shape_;
+  std::vector<float> each;
+  for (uint32_t i = 0; i < components.count(); ++i) {
+    Form edge;
+    if (!works(count + 1)) return false;
+    if (!check(components.take(i, edge), "setbackPerEdge")) return false;
+    shape_ = whole;
+    shape_.form = edge;
+    shape_.compIndex = i;
+    shape_.compTotal = components.count();
+    shape_.key = childKey(whole.key, 0x30000000u + i);
+    shape_.draws = 0;
+    resetPivot(shape_);
+    hasHull_ = false;
+    if (top + count >= kStackSize) {
+      fail("values of rule '" + program_.strings[words_[chunk_]] + "' need more than " + std::to_string(kStackSize) +
+           " places");
+      return false;
+    }
+    for (uint32_t v = 0; v < count; ++v) stack_[top + v] = stack_[base + v];
+    const uint32_t how = cgaRun(chunk, top);
+    shape_ = whole;
+    if (how != kCgaDone) {
+      fail("the distance of setbackPerEdge has no value");
+      return false;
+    }
+    each.push_back(number(stack_[top]));
+  }
+  hasHull_ = false;
+  return setbackEach(true, each, a, table, base);
 }
 
 /// The distance by which all selected edges move so that the remainder has an area, by halving.
 bool Deriver::setbackToArea_(const Arguments& a, uint32_t table, uint32_t base) {
   if (shape_.form.mesh == 0) return true;
   const float wanted = number(a[0]);
-  const uint32_t edges = componentCount(pool_, shape_.form, Component::FaceEdges);
+  const Components components(pool_, shape_.form, Component::FaceEdges);
+  const uint32_t edges = components.count();
   std::vector<bool> moves(edges, false);
   for (uint32_t p = 0; p < words_[table]; ++p) {
     const CgaValue& value = a.values[words_[words_[table + 1 + p] + kCgaPartSelector]];
     for (uint32_t i = 0; i < edges; ++i)
-      if (word(value) != "remainder" && selects(word(value), Component::FaceEdges, i, edges, value)) moves[i] = true;
+      if (word(value) != "remainder" && selects(word(value), &components, i, edges, value)) moves[i] = true;
   }
   const vec3 e = shape_.form.scope.size;
   float low = 0, high = std::max({e.x, e.y, e.z});
@@ -397,8 +531,15 @@ bool Deriver::innerRectangle_(const Arguments& a, uint32_t table, uint32_t base)
   const Status status = innerRectangle(pool_, shape_.form, word(a[0]) == "scope", inner);
   if (status != kGeometryOk && status != kGeometryEmpty) return check(status, "innerRectangle");
   for (uint32_t p = 0; p < words_[table]; ++p)
-    if (word(a.values[words_[words_[table + 1 + p] + kCgaPartSelector]]) == "remainder" && !boxes_.is(shape_.form))
-      warn("innerRectangle", "the remainder of innerRectangle is not supported, and left out");
+    if (word(a.values[words_[words_[table + 1 + p] + kCgaPartSelector]]) == "remainder" && inner.mesh &&
+        !boxes_.is(shape_.form)) {
+      const Status left = boolean(pool_, shape_.form, inner, Boolean::Difference, rest);
+      if (left == kGeometryEmpty) rest.mesh = 0;
+      if (left == kGeometryNotPlanar || left == kGeometryBadArgument)
+        warn("innerRectangle", "innerRectangle of faces in several planes has no remainder");
+      else if (left != kGeometryOk && left != kGeometryEmpty && !check(left, "innerRectangle"))
+        return false;
+    }
   return shapeAndRemainder(inner, rest, a, table, base);
 }
 

@@ -367,7 +367,17 @@ private:
       s.arguments = arguments();
     }
     if (accept(".")) s.kind = Statement::Kind::leaf;
-    if (token().is("{")) block(s);
+    if (token().is("{")) {
+      block(s);
+    } else if (isInlined(s.name) && s.kind == Statement::Kind::call &&
+               isName()) { // inline Rule, inline split(x) { ... }
+      Nested nested(*this);
+      Part part;
+      part.place = token().place;
+      part.body.push_back(statement());
+      s.hasBlock = true;
+      s.parts.push_back(std::move(part));
+    }
     return s;
   }
 
@@ -385,15 +395,26 @@ private:
     return result;
   }
 
+  /// What is derived at once: of a block, or of the one statement behind it.
+  static bool isInlined(std::string_view name) {
+    return name == "inline" || name == "union" || name == "subtract" || name == "intersect";
+  }
+
   void block(Statement& s) {
     s.hasBlock = true;
-    if (s.name == "scatter" || s.name == "modify" || s.name == "inline" || s.name == "union" || s.name == "subtract" ||
-        s.name == "intersect") {
-      Part part;
-      part.place = token().place;
+    if (s.name == "scatter" || s.name == "modify" || isInlined(s.name)) {
       expect("{", "");
-      part.body = inBraces([&] { return body(); });
-      s.parts.push_back(std::move(part));
+      const bool hasTwo = isInlined(s.name) && s.name != "inline";
+      s.parts = inBraces([&] {
+        std::vector<Part> parts;
+        do {
+          Part part;
+          part.place = token().place;
+          part.body = body();
+          parts.push_back(std::move(part));
+        } while (hasTwo && parts.size() < 2 && accept("|"));
+        return parts;
+      });
     } else {
       s.parts = group();
     }

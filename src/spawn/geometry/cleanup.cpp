@@ -71,8 +71,8 @@ struct DirectedEdge {
   uint32_t corner, from, to;
   bool used = false;
 };
-void chain(std::vector<DirectedEdge>& edges, const std::vector<vec3>& positions, const PlaneBasis& basis, uint32_t tags,
-           std::vector<Outlines>& faces) {
+void chain(MeshPool& pool, std::vector<DirectedEdge>& edges, const std::vector<vec3>& positions,
+           const PlaneBasis& basis, uint32_t tags, std::vector<Outlines>& faces) {
   std::vector<std::vector<uint32_t>> loops;
   std::vector<std::vector<vec2>> points;
   for (DirectedEdge& start : edges) {
@@ -87,6 +87,7 @@ void chain(std::vector<DirectedEdge>& edges, const std::vector<vec3>& positions,
       if (e->to == start.from) break;
       const glm::dvec2 along(inPlane(basis, positions[e->to]) - at.back());
       DirectedEdge* next = nullptr;
+      if (!countSteps(pool, edges.size())) return;
       double best = -10;
       for (DirectedEdge& other : edges) {
         if (other.used || other.from != e->to) continue;
@@ -130,6 +131,7 @@ void chain(std::vector<DirectedEdge>& edges, const std::vector<vec3>& positions,
   // A hole belongs to the smallest outline around it.
   for (size_t j = 0; j < loops.size(); ++j) {
     if (areaOf(points[j]) >= 0) continue;
+    for (const auto& loop : points) countSteps(pool, loop.size());
     const vec2 middle = (points[j][0] + points[j][1]) * 0.5f;
     size_t chosen = loops.size();
     for (size_t i = 0; i < loops.size(); ++i) {
@@ -184,6 +186,7 @@ std::vector<Outlines> mergeFaces(MeshPool& pool, const Form& form, const std::ve
       continue;
     }
     for (DirectedEdge& e : edges[f]) {
+      if (!countSteps(pool, edges[f].size())) break;
       for (DirectedEdge& o : edges[f]) {
         if (e.used || o.used || &e == &o || e.from != o.to || e.to != o.from) continue;
         e.used = o.used = true;
@@ -191,7 +194,7 @@ std::vector<Outlines> mergeFaces(MeshPool& pool, const Form& form, const std::ve
     }
     const PlaneBasis basis =
         planeBasis(positions[edges[f][0].from], normals[f], positions[edges[f][0].to] - positions[edges[f][0].from]);
-    chain(edges[f], positions, basis, old[f].tags, faces);
+    chain(pool, edges[f], positions, basis, old[f].tags, faces);
   }
   return faces;
 }
@@ -267,7 +270,9 @@ Status cleanup(MeshPool& pool, Form& form, const Cleanup& what) {
     const auto neighbours = outlineNeighbours(pool, form, faces, welded);
     for (uint32_t v = 0; v < welded.size(); ++v) {
       const auto [a, b] = neighbours[v];
-      if (a == kNone || !canDrop(pool, form, faces, welded, v)) continue;
+      if (a == kNone) continue;
+      if (!countSteps(pool, meshCorners(pool, form.mesh))) return attempt.end(kGeometryTooLarge);
+      if (!canDrop(pool, form, faces, welded, v)) continue;
       const vec3 in = unit3(positions[v] - positions[a]), out = unit3(positions[b] - positions[v]);
       if (inner3(in, out) >= cosine) dropPlace(pool, form, faces, welded, v);
     }
@@ -287,12 +292,15 @@ Status reduce(MeshPool& pool, Form& form, float part) {
       size_t(std::count_if(first.begin(), first.end(), [](const auto& p) { return p.first != kNone; }));
   const size_t goes = size_t(part * float(candidates));
   for (size_t i = 0; i < goes; ++i) {
+    if (!countSteps(pool, 4ull * meshCorners(pool, form.mesh))) return attempt.end(kGeometryTooLarge);
     const auto neighbours = outlineNeighbours(pool, form, faces, welded);
     float best = 0;
     uint32_t chosen = kNone;
     for (uint32_t v = 0; v < welded.size(); ++v) {
       const auto [a, b] = neighbours[v];
-      if (a == kNone || !canDrop(pool, form, faces, welded, v)) continue;
+      if (a == kNone) continue;
+      if (!countSteps(pool, meshCorners(pool, form.mesh))) return attempt.end(kGeometryTooLarge);
+      if (!canDrop(pool, form, faces, welded, v)) continue;
       const float moved = length3(outer3(positions[a] - positions[v], positions[b] - positions[v]));
       if (chosen != kNone && moved >= best) continue;
       best = moved;
@@ -399,8 +407,10 @@ Status convexify(MeshPool& pool, Form& form) {
     bool joined = true;
     while (joined) {
       joined = false;
+      if (!countSteps(pool, pieces.size())) return attempt.end(kGeometryTooLarge);
       for (size_t i = 0; i < pieces.size() && !joined; ++i) {
         for (size_t j = i + 1; j < pieces.size() && !joined; ++j) {
+          countSteps(pool, pieces[i].size());
           for (size_t k = 0; k < pieces[i].size() && !joined; ++k) {
             const uint32_t a = pieces[i][k], c = pieces[i][(k + 1) % pieces[i].size()];
             const auto at = std::find(pieces[j].begin(), pieces[j].end(), c);

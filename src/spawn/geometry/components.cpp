@@ -100,88 +100,6 @@ std::vector<uint32_t> placesOf(const std::vector<uint32_t>& welded) {
   return places;
 }
 
-/// Where a component is and which way it faces, in the frame, with the tags that it has.
-struct Direction {
-  bool found = false;
-  vec3 normal{0.0f};
-  uint32_t tags = 0;
-  bool border = false;
-};
-Direction directionOf(MeshPool& pool, const Form& form, Component kind, uint32_t index, bool wantBorder) {
-  Direction d;
-  vec3 local(0.0f);
-  const uint faces = meshFaces(pool, form.mesh);
-  const auto bordersOf = [&](const auto& isPart) {
-    if (!wantBorder) return false;
-    const std::vector<MeshEdge> edges = meshEdges(pool, form);
-    return std::any_of(edges.begin(), edges.end(), [&](const MeshEdge& e) { return e.faces == 1 && isPart(e); });
-  };
-  switch (kind) {
-  case Component::Faces:
-    if (index >= faces) return d;
-    local = localNormal(pool, form, index);
-    d.tags = faceOf(pool, form.mesh, index).tags;
-    d.border = bordersOf([&](const MeshEdge& e) { return e.face == index; });
-    break;
-  case Component::Edges: {
-    const std::vector<MeshEdge> edges = meshEdges(pool, form);
-    if (index >= edges.size()) return d;
-    const MeshEdge& e = edges[index];
-    d.tags = cornerTags(pool, form.mesh, e.corner) | cornerTags(pool, form.mesh, e.otherCorner);
-    d.border = e.faces == 1;
-    local = e.faces == 1 ? outOf(pool, form, faceEdge(pool, form, e.face, e.corner))
-                         : plus3(localNormal(pool, form, e.face), localNormal(pool, form, e.otherFace));
-    break;
-  }
-  case Component::FaceEdges: {
-    if (index >= meshCorners(pool, form.mesh)) return d;
-    const uint face = cornerFaces(pool, form.mesh)[index];
-    local = outOf(pool, form, faceEdge(pool, form, face, index));
-    d.tags = cornerTags(pool, form.mesh, index);
-    if (wantBorder) {
-      for (const MeshEdge& e : meshEdges(pool, form)) {
-        d.border = d.border || (e.corner == index && e.faces == 1);
-      }
-    }
-    break;
-  }
-  case Component::Vertices: {
-    const std::vector<uint32_t> welded = weldVertices(pool, form);
-    const std::vector<uint32_t> places = placesOf(welded);
-    if (index >= places.size()) return d;
-    const std::vector<uint32_t> faceAt = cornerFaces(pool, form.mesh);
-    for (uint c = 0; c < faceAt.size(); ++c) {
-      if (welded[cornerVertex(pool, form.mesh, c)] == places[index])
-        local = plus3(local, localNormal(pool, form, faceAt[c]));
-    }
-    d.border = bordersOf([&](const MeshEdge& e) { return e.from == places[index] || e.to == places[index]; });
-    break;
-  }
-  case Component::Groups: {
-    const auto groups = groupsOf(pool, form);
-    if (index >= groups.size()) return d;
-    for (const uint32_t f : groups[index]) {
-      local = plus3(local, faceAreaVector(pool, form, f));
-      d.tags |= faceOf(pool, form.mesh, f).tags;
-    }
-    d.border = bordersOf([&](const MeshEdge& e) {
-      return std::find(groups[index].begin(), groups[index].end(), e.face) != groups[index].end();
-    });
-    break;
-  }
-  case Component::Holes: {
-    const auto holes = holesOf(pool, form);
-    if (index >= holes.size()) return d;
-    local = localNormal(pool, form, holes[index].first);
-    d.tags = faceOf(pool, form.mesh, holes[index].first).tags;
-    break;
-  }
-  }
-  d.found = true;
-  d.normal = unit3(scopeDirection(form.scope, local));
-  return d;
-}
-
 /// A scope with z along a normal of the frame and x along a direction.
 Scope scopeAlong(vec3 origin, vec3 normal, vec3 along) {
   const PlaneBasis basis = planeBasis(origin, normal, along);
@@ -204,12 +122,17 @@ Scope faceScope(MeshPool& pool, const Form& form, uint32_t f) {
   return scopeAlong(framePosition(pool, form, loop.firstCorner), normal, best);
 }
 
-/// Faces of a form as one of other axes, tight. flat: z of all positions is 0.
+/// Faces of a form as one of other axes, tight. flat: z of all positions is 0. number: kNone for each vertex of the
+/// form, and so again afterwards.
 Status takeFaces(MeshPool& pool, const Form& form, std::span<const uint32_t> faces, const Scope& scope, bool flat,
-                 Form& taken) {
+                 std::vector<uint32_t>& number, Form& taken) {
   Form made{scope, vec3(1.0f), 0};
-  std::vector<uint32_t> number(meshVertices(pool, form.mesh), kNone);
-  Builder b = builderFor(pool, form.mesh, 1);
+  uint corners = 0, loops = 0;
+  for (const uint32_t f : faces) {
+    corners += faceCorners(pool, form.mesh, f).corners;
+    loops += faceOf(pool, form.mesh, f).loops;
+  }
+  Builder b = newBuilder(pool, corners, corners, loops, uint(faces.size()), meshUvSets(pool, form.mesh));
   const bool sameAxes = !flat && scope.axisX == form.scope.axisX && scope.axisY == form.scope.axisY;
   for (const uint32_t f : faces) {
     const Face face = faceOf(pool, form.mesh, f);
@@ -230,6 +153,12 @@ Status takeFaces(MeshPool& pool, const Form& form, std::span<const uint32_t> fac
       }
     }
   }
+  for (const uint32_t f : faces) {
+    const Loop all = faceCorners(pool, form.mesh, f);
+    for (uint c = 0; c < all.corners; ++c) {
+      number[cornerVertex(pool, form.mesh, all.firstCorner + c)] = kNone;
+    }
+  }
   if (sameAxes) made.scope.origin = form.scope.origin;
   const Status status = finishForm(pool, b, made, true);
   if (status <= kGeometryEmpty) taken = made;
@@ -240,23 +169,139 @@ Status takeFaces(MeshPool& pool, const Form& form, std::span<const uint32_t> fac
 
 Axes axesOf(const Scope& scope) { return {scope.axisX, scope.axisY, scope.axisZ}; }
 
-uint32_t componentCount(MeshPool& pool, const Form& form, Component kind) {
+Components::Components(MeshPool& pool, const Form& form, Component kind) : pool_(pool), form_(form), kind_(kind) {
+  countSteps(pool, meshCorners(pool, form.mesh));
   switch (kind) {
-  case Component::Faces: return meshFaces(pool, form.mesh);
-  case Component::Edges: return edgeCount(pool, form);
-  case Component::FaceEdges: return meshCorners(pool, form.mesh);
-  case Component::Vertices: return vertexCount(pool, form);
-  case Component::Groups: return uint32_t(groupsOf(pool, form).size());
-  case Component::Holes: return uint32_t(holesOf(pool, form).size());
+  case Component::Faces: count_ = meshFaces(pool, form.mesh); break;
+  case Component::Edges: count_ = uint32_t(edges().size()); break;
+  case Component::FaceEdges:
+    faceAt_ = cornerFaces(pool, form.mesh);
+    count_ = uint32_t(faceAt_.size());
+    break;
+  case Component::Vertices: {
+    const std::vector<uint32_t> welded = weldVertices(pool, form);
+    places_ = placesOf(welded);
+    faceAt_ = cornerFaces(pool, form.mesh);
+    sums_.assign(welded.size(), vec3(0.0f));
+    for (uint c = 0; c < faceAt_.size(); ++c) {
+      vec3& sum = sums_[welded[cornerVertex(pool, form.mesh, c)]];
+      sum = plus3(sum, localNormal(pool, form, faceAt_[c]));
+    }
+    count_ = uint32_t(places_.size());
+    break;
+  }
+  case Component::Groups:
+    groups_ = groupsOf(pool, form);
+    count_ = uint32_t(groups_.size());
+    break;
+  case Component::Holes:
+    holes_ = holesOf(pool, form);
+    count_ = uint32_t(holes_.size());
+    break;
+  }
+}
+
+const std::vector<MeshEdge>& Components::edges() const {
+  if (!hasEdges_) edges_ = meshEdges(pool_, form_);
+  hasEdges_ = true;
+  return edges_;
+}
+
+bool Components::isBorder(uint32_t index) const {
+  if (kind_ == Component::Edges) return edges()[index].faces == 1;
+  if (kind_ == Component::Holes) return false;
+  if (!hasBorder_) {
+    hasBorder_ = true;
+    border_.assign(kind_ == Component::Vertices ? meshVertices(pool_, form_.mesh) : count_, false);
+    std::vector<uint32_t> groupAt(kind_ == Component::Groups ? meshFaces(pool_, form_.mesh) : 0);
+    for (uint32_t g = 0; g < groups_.size(); ++g) {
+      for (const uint32_t f : groups_[g]) {
+        groupAt[f] = g;
+      }
+    }
+    for (const MeshEdge& e : edges()) {
+      if (e.faces != 1) continue;
+      if (kind_ == Component::Faces) border_[e.face] = true;
+      if (kind_ == Component::FaceEdges) border_[e.corner] = true;
+      if (kind_ == Component::Groups) border_[groupAt[e.face]] = true;
+      if (kind_ == Component::Vertices) border_[e.from] = border_[e.to] = true;
+    }
+  }
+  return border_[kind_ == Component::Vertices ? places_[index] : index];
+}
+
+uint32_t Components::tags(uint32_t index) const {
+  if (index >= count_) return 0;
+  switch (kind_) {
+  case Component::Faces: return faceOf(pool_, form_.mesh, index).tags;
+  case Component::Edges:
+    return cornerTags(pool_, form_.mesh, edges()[index].corner) |
+           cornerTags(pool_, form_.mesh, edges()[index].otherCorner);
+  case Component::FaceEdges: return cornerTags(pool_, form_.mesh, index);
+  case Component::Vertices: return 0;
+  case Component::Groups: {
+    uint32_t tags = 0;
+    for (const uint32_t f : groups_[index]) {
+      tags |= faceOf(pool_, form_.mesh, f).tags;
+    }
+    return tags;
+  }
+  case Component::Holes: return faceOf(pool_, form_.mesh, holes_[index].first).tags;
   }
   return 0;
 }
 
-bool matches(MeshPool& pool, const Form& form, Component kind, uint32_t index, Selector selector, const Axes& axes) {
-  const bool wantBorder = selector == Selector::Border || selector == Selector::Inside;
-  const Direction d = directionOf(pool, form, kind, index, wantBorder);
-  if (!d.found) return false;
-  const vec3 n(inner3(axes.x, d.normal), inner3(axes.y, d.normal), inner3(axes.z, d.normal));
+uint32_t Components::tagsOfEdges(uint32_t index) const {
+  if (kind_ != Component::Faces || index >= count_) return tags(index);
+  const Loop all = faceCorners(pool_, form_.mesh, index);
+  uint32_t found = 0;
+  for (uint c = 0; c < all.corners; ++c) {
+    found |= cornerTags(pool_, form_.mesh, all.firstCorner + c);
+  }
+  return found;
+}
+
+vec3 Components::normal(uint32_t index) const {
+  vec3 local(0.0f);
+  switch (kind_) {
+  case Component::Faces: local = localNormal(pool_, form_, index); break;
+  case Component::Edges: {
+    const MeshEdge& e = edges()[index];
+    local = e.faces == 1 ? outOf(pool_, form_, faceEdge(pool_, form_, e.face, e.corner))
+                         : plus3(localNormal(pool_, form_, e.face), localNormal(pool_, form_, e.otherFace));
+    break;
+  }
+  case Component::FaceEdges: local = outOf(pool_, form_, faceEdge(pool_, form_, faceAt_[index], index)); break;
+  case Component::Vertices: local = sums_[places_[index]]; break;
+  case Component::Groups:
+    for (const uint32_t f : groups_[index]) {
+      local = plus3(local, faceAreaVector(pool_, form_, f));
+    }
+    break;
+  case Component::Holes: local = localNormal(pool_, form_, holes_[index].first); break;
+  }
+  return unit3(scopeDirection(form_.scope, local));
+}
+
+bool Components::matches(uint32_t index, Selector selector, const Axes& axes) const {
+  if (index >= count_) return false;
+  switch (selector) {
+  case Selector::All: return true;
+  case Selector::Border: return isBorder(index);
+  case Selector::Inside: return !isBorder(index);
+  case Selector::Eave: return (tags(index) & kTagEave) != 0;
+  case Selector::Hip: return (tags(index) & kTagHip) != 0;
+  case Selector::Valley: return (tags(index) & kTagValley) != 0;
+  case Selector::Ridge: return (tags(index) & kTagRidge) != 0;
+  case Selector::StreetFront: return (tags(index) & kTagStreetFront) != 0;
+  case Selector::StreetBack: return (tags(index) & kTagStreetBack) != 0;
+  case Selector::StreetLeft: return (tags(index) & kTagStreetLeft) != 0;
+  case Selector::StreetRight: return (tags(index) & kTagStreetRight) != 0;
+  case Selector::StreetSide: return (tags(index) & (kTagStreetLeft | kTagStreetRight)) != 0;
+  default: break;
+  }
+  const vec3 direction = normal(index);
+  const vec3 n(inner3(axes.x, direction), inner3(axes.y, direction), inner3(axes.z, direction));
   constexpr float kSine45 = 0.70710678f, kSine11 = 0.19509032f, kSine78 = 0.98078528f, kSlack = 1e-5f;
   const bool top = n.y > kSine45 + kSlack, bottom = n.y < -kSine45 - kSlack;
   const bool level = !top && !bottom; // 45 degrees is a side's
@@ -273,35 +318,27 @@ bool matches(MeshPool& pool, const Form& form, Component kind, uint32_t index, S
   case Selector::Horizontal: return std::fabs(n.y) > kSine78;
   case Selector::Aslant: return n.y > kSine11 + kSlack && n.y <= kSine78;
   case Selector::Nutant: return n.y < -kSine11 - kSlack && n.y >= -kSine78;
-  case Selector::Border: return d.border;
-  case Selector::Inside: return !d.border;
-  case Selector::Eave: return (d.tags & kTagEave) != 0;
-  case Selector::Hip: return (d.tags & kTagHip) != 0;
-  case Selector::Valley: return (d.tags & kTagValley) != 0;
-  case Selector::Ridge: return (d.tags & kTagRidge) != 0;
-  case Selector::All: return true;
+  default: return false;
   }
   return false;
 }
 
-uint32_t componentTags(MeshPool& pool, const Form& form, Component kind, uint32_t index) {
-  return directionOf(pool, form, kind, index, false).tags;
-}
-
-Status toComponent(MeshPool& pool, const Form& form, Component kind, uint32_t index, Form& component) {
+Status Components::take(uint32_t index, Form& component) const {
+  if (index >= count_) return kGeometryBadArgument;
+  MeshPool& pool = pool_;
+  const Form& form = form_;
+  if (number_.empty()) number_.assign(meshVertices(pool, form.mesh), kNone);
   Attempt attempt(pool);
-  switch (kind) {
+  switch (kind_) {
   case Component::Faces:
-    if (index >= meshFaces(pool, form.mesh)) return kGeometryBadArgument;
-    return attempt.end(takeFaces(pool, form, {{index}}, faceScope(pool, form, index), true, component));
+    return attempt.end(takeFaces(pool, form, {{index}}, faceScope(pool, form, index), true, number_, component));
   case Component::Edges:
   case Component::FaceEdges: {
-    const std::vector<MeshEdge> edges = kind == Component::Edges ? meshEdges(pool, form) : std::vector<MeshEdge>{};
-    if (index >= (kind == Component::Edges ? edges.size() : meshCorners(pool, form.mesh))) return kGeometryBadArgument;
-    const uint corner = kind == Component::Edges ? edges[index].corner : index;
-    const FaceEdge e = faceEdge(pool, form, cornerFaces(pool, form.mesh)[corner], corner);
+    const bool shared = kind_ == Component::Edges;
+    const uint corner = shared ? edges()[index].corner : index;
+    const FaceEdge e = faceEdge(pool, form, shared ? edges()[index].face : faceAt_[corner], corner);
     vec3 normal = localNormal(pool, form, e.face);
-    if (kind == Component::Edges) normal = plus3(normal, localNormal(pool, form, edges[index].otherFace));
+    if (shared) normal = plus3(normal, localNormal(pool, form, edges()[index].otherFace));
     const vec3 along = minus3(e.to, e.from);
     const vec3 x = unit3(scopeDirection(form.scope, along));
     vec3 z = unit3(scopeDirection(form.scope, normal));
@@ -312,23 +349,16 @@ Status toComponent(MeshPool& pool, const Form& form, Component kind, uint32_t in
     return attempt.end(kGeometryOk);
   }
   case Component::Vertices: {
-    const std::vector<uint32_t> places = placesOf(weldVertices(pool, form));
-    if (index >= places.size()) return kGeometryBadArgument;
-    vec3 normal = directionOf(pool, form, kind, index, false).normal;
-    if (normal == vec3(0.0f)) normal = form.scope.axisY;
-    const vec3 p = scaled3(vertexPosition(pool, form.mesh, places[index]), form.scale);
-    component = {scopeAlong(scopePoint(form.scope, p), normal, form.scope.axisX), vec3(1.0f), 0};
+    vec3 direction = normal(index);
+    if (direction == vec3(0.0f)) direction = form.scope.axisY;
+    const vec3 p = scaled3(vertexPosition(pool, form.mesh, places_[index]), form.scale);
+    component = {scopeAlong(scopePoint(form.scope, p), direction, form.scope.axisX), vec3(1.0f), 0};
     return attempt.end(kGeometryOk);
   }
-  case Component::Groups: {
-    const auto groups = groupsOf(pool, form);
-    if (index >= groups.size()) return kGeometryBadArgument;
-    return attempt.end(takeFaces(pool, form, groups[index], form.scope, false, component));
-  }
+  case Component::Groups:
+    return attempt.end(takeFaces(pool, form, groups_[index], form.scope, false, number_, component));
   case Component::Holes: {
-    const auto holes = holesOf(pool, form);
-    if (index >= holes.size()) return kGeometryBadArgument;
-    const auto [f, l] = holes[index];
+    const auto [f, l] = holes_[index];
     const Loop loop = loopOf(pool, form.mesh, l);
     Form made{faceScope(pool, form, f), vec3(1.0f), 0};
     Builder b = newBuilder(pool, loop.corners, loop.corners, 1, 1, meshUvSets(pool, form.mesh));
@@ -350,6 +380,23 @@ Status toComponent(MeshPool& pool, const Form& form, Component kind, uint32_t in
   return kGeometryBadArgument;
 }
 
+uint32_t componentCount(MeshPool& pool, const Form& form, Component kind) {
+  switch (kind) {
+  case Component::Faces: return meshFaces(pool, form.mesh);
+  case Component::FaceEdges: return meshCorners(pool, form.mesh);
+  default: return Components(pool, form, kind).count();
+  }
+}
+bool matches(MeshPool& pool, const Form& form, Component kind, uint32_t index, Selector selector, const Axes& axes) {
+  return Components(pool, form, kind).matches(index, selector, axes);
+}
+uint32_t componentTags(MeshPool& pool, const Form& form, Component kind, uint32_t index) {
+  return Components(pool, form, kind).tags(index);
+}
+Status toComponent(MeshPool& pool, const Form& form, Component kind, uint32_t index, Form& component) {
+  return Components(pool, form, kind).take(index, component);
+}
+
 Status toComponents(MeshPool& pool, const Form& form, Component kind, std::span<const uint32_t> indices,
                     Form& combined) {
   Attempt attempt(pool);
@@ -365,9 +412,10 @@ Status toComponents(MeshPool& pool, const Form& form, Component kind, std::span<
     break;
   }
   case Component::Holes: {
+    const Components holes(pool, form, kind);
     std::vector<Form> parts(indices.size());
     for (size_t i = 0; i < indices.size(); ++i) {
-      if (const Status status = toComponent(pool, form, kind, indices[i], parts[i])) return attempt.end(status);
+      if (const Status status = holes.take(indices[i], parts[i])) return attempt.end(status);
     }
     if (parts.empty()) return attempt.end(kGeometryEmpty);
     Form made{};
@@ -383,7 +431,8 @@ Status toComponents(MeshPool& pool, const Form& form, Component kind, std::span<
   }
   std::sort(faces.begin(), faces.end());
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-  return attempt.end(takeFaces(pool, form, faces, form.scope, false, combined));
+  std::vector<uint32_t> number(meshVertices(pool, form.mesh), kNone);
+  return attempt.end(takeFaces(pool, form, faces, form.scope, false, number, combined));
 }
 
 Status tagComponent(MeshPool& pool, Form& form, Component kind, uint32_t index, uint32_t tags) {
@@ -411,6 +460,40 @@ Status tagComponent(MeshPool& pool, Form& form, Component kind, uint32_t index, 
     }
   }
   return attempt.end(finishForm(pool, b, form, false));
+}
+
+Status tagAll(MeshPool& pool, Form& form, bool faces, bool edges, uint32_t set, uint32_t clear) {
+  const uint faceWords = kFaceWords * meshFaces(pool, form.mesh);
+  const uint cornerWords = kCornerWords * meshCorners(pool, form.mesh);
+  if (form.mesh == 0) return kGeometryOk;
+  const uint to = takePool(pool, kMeshHeader + faceWords + cornerWords);
+  if (to == 0) return kGeometryNoRoom;
+  for (uint i = 0; i < kMeshHeader; ++i) {
+    setPoolWord(pool, to + i, poolWord(pool, form.mesh + i));
+  }
+  const auto copy = [&](uint range, uint at, uint words, uint stride, uint tag, bool changes) {
+    const uint from = poolWord(pool, form.mesh + range);
+    setPoolWord(pool, to + range, at);
+    for (uint i = 0; i < words; ++i) {
+      const uint w = poolWord(pool, from + i);
+      setPoolWord(pool, at + i, changes && i % stride == tag ? (w & ~clear) | set : w);
+    }
+  };
+  copy(kMeshFaceRange, to + kMeshHeader, faceWords, kFaceWords, 2, faces);
+  copy(kMeshCornerRange, to + kMeshHeader + faceWords, cornerWords, kCornerWords, 1, edges);
+  form.mesh = to;
+  return kGeometryOk;
+}
+
+uint32_t tagsOf(MeshPool& pool, const Form& form, bool faces, bool edges) {
+  uint32_t tags = 0;
+  for (uint f = 0; faces && f < meshFaces(pool, form.mesh); ++f) {
+    tags |= faceOf(pool, form.mesh, f).tags;
+  }
+  for (uint c = 0; edges && c < meshCorners(pool, form.mesh); ++c) {
+    tags |= cornerTags(pool, form.mesh, c);
+  }
+  return tags;
 }
 
 } // namespace gpgp::spawn

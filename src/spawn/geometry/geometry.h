@@ -133,6 +133,11 @@ enum class Selector {
   Hip,
   Valley,
   Ridge,
+  StreetFront, ///< by their tags: kTagStreetFront and its like
+  StreetBack,
+  StreetLeft,
+  StreetRight,
+  StreetSide, ///< left and right
   All
 };
 /// The axes of a classification, in the frame: of the scope itself (front, ...), of the axiom (object.front, ...: the
@@ -145,6 +150,44 @@ bool matches(MeshPool& pool, const Form& form, Component kind, uint32_t index, S
 /// Whether a component has one of these tags (kTag... of pool.h).
 uint32_t componentTags(MeshPool& pool, const Form& form, Component kind, uint32_t index);
 
+struct MeshEdge {
+  uint32_t from, to;               ///< vertices, of one place the first, from < to
+  uint32_t corner, face;           ///< one that has it, the first
+  uint32_t faces;                  ///< how many corners have it
+  uint32_t otherCorner, otherFace; ///< the second, if there is one
+  bool opposed;                    ///< all of its faces but the first run along it the other way
+};
+
+/// All components of a kind, found once: for loops over them. The functions below it are for single ones.
+class Components {
+public:
+  Components(MeshPool& pool, const Form& form, Component kind);
+  uint32_t count() const { return count_; }
+  bool matches(uint32_t index, Selector selector, const Axes& axes) const;
+  uint32_t tags(uint32_t index) const;
+  uint32_t tagsOfEdges(uint32_t index) const;         ///< of a face's edges, of others as tags()
+  Status take(uint32_t index, Form& component) const; ///< as toComponent()
+
+private:
+  const std::vector<MeshEdge>& edges() const;
+  bool isBorder(uint32_t index) const;
+  vec3 normal(uint32_t index) const;
+
+  MeshPool& pool_;
+  Form form_;
+  Component kind_;
+  uint32_t count_ = 0;
+  std::vector<uint32_t> faceAt_, places_; // the face of each corner; for each place a vertex
+  std::vector<vec3> sums_;                // of the normals of the faces at a vertex
+  std::vector<std::vector<uint32_t>> groups_;
+  std::vector<std::pair<uint32_t, uint32_t>> holes_; // face and loop
+  // What only some selectors need.
+  mutable std::vector<MeshEdge> edges_;
+  mutable std::vector<bool> border_;
+  mutable std::vector<uint32_t> number_;
+  mutable bool hasEdges_ = false, hasBorder_ = false;
+};
+
 /// The component as a form of its own. Scopes: a face has z along the normal, x along its first edge, in the order in
 /// which y points up within the face; extents are tight. An edge has x along itself, z along its mean normal. A vertex
 /// has its mean normal as z. Edges and vertices have mesh 0. Groups keep the scope's axes, and are tight.
@@ -154,6 +197,11 @@ Status toComponents(MeshPool& pool, const Form& form, Component kind, std::span<
                     Form& combined);
 /// Tags or'ed into those of a component.
 Status tagComponent(MeshPool& pool, Form& form, Component kind, uint32_t index, uint32_t tags);
+
+/// Sets and clears tags of all faces, of all edges (their corners), or both.
+Status tagAll(MeshPool& pool, Form& form, bool faces, bool edges, uint32_t set, uint32_t clear);
+/// The tags of all faces, or of all edges, or'ed.
+uint32_t tagsOf(MeshPool& pool, const Form& form, bool faces, bool edges);
 
 // ---------------------------------------------------------------- extrusion
 
@@ -182,6 +230,27 @@ Status slice(MeshPool& pool, const Form& form, uint32_t axis, float from, float 
 Status sliceUv(MeshPool& pool, const Form& form, uint32_t set, uint32_t axis, float from, float to, Form& piece);
 /// The part in front of a plane: dot(normal, p) >= offset, in the frame. CGA's trim. Scope as it was.
 Status trim(MeshPool& pool, Form& form, vec3 normal, float offset, bool close);
+
+/// How far along an axis of the scope, metres from its origin, the faces have an area below: one for each of the areas,
+/// square metres, ascending. Of faces at right angles to the axis all or nothing is below.
+std::vector<float> placesOfAreas(MeshPool& pool, const Form& form, uint32_t axis, std::span<const double> areas);
+
+// ---------------------------------------------------------------- Boolean operations
+
+enum class Boolean { Union, Difference, Intersection };
+/// Of two forms in one plane, or of two closed meshes, whose faces are tagged kTagBooleanA and kTagBooleanB. Axes of a;
+/// tight. Coordinates go. kGeometryEmpty: nothing is left. kGeometryNotPlanar: flat forms of two planes.
+/// kGeometryBadArgument: an open mesh. The surface of a mesh that is not convex may touch itself along edges.
+Status boolean(MeshPool& pool, const Form& a, const Form& b, Boolean what, Form& result);
+
+// ---------------------------------------------------------------- bending
+
+enum class BendAlong { ScopeY, VertexNormal };
+/// Replaces the geometry by an asset, repeated and bent along texture coordinates: its extent along x is one unit of u,
+/// that along z one of -v, that along y `height` metres, in the direction of `along`. The asset stands on the faces;
+/// keepPosition: its origin does. Faces of three and four corners only, others give nothing. Tight.
+Status insertAlongUv(MeshPool& pool, Form& form, uint32_t set, const Form& asset, float height, BendAlong along,
+                     bool keepPosition);
 
 // ---------------------------------------------------------------- setbacks and offsets
 

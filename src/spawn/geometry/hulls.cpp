@@ -23,6 +23,7 @@ void addPiece(Hull& hull, const std::vector<vec3>& points) {
 /// Whether all of a closed mesh is behind each of its faces.
 bool isConvexSolid(MeshPool& pool, const Form& form, float slack) {
   for (uint f = 0; f < meshFaces(pool, form.mesh); ++f) {
+    if (!countSteps(pool, meshVertices(pool, form.mesh))) return false;
     const vec3 n = localNormal(pool, form, f);
     const float at = inner3(n, localPosition(pool, form, faceCorners(pool, form.mesh, f).firstCorner));
     for (uint v = 0; v < meshVertices(pool, form.mesh); ++v) {

@@ -26,11 +26,12 @@ Status envelope(MeshPool& pool, Form& form, const Envelope& shape) {
     const vec3 normal = localNormal(pool, base, 0);
     status = extrude(pool, volume, Extrusion::FaceNormal, shape.maxHeight);
     const Loop outer = loopOf(pool, base.mesh, faceOf(pool, base.mesh, 0).firstLoop);
+    const Components edges(pool, base, Component::FaceEdges);
     for (uint c = outer.firstCorner; c < outer.firstCorner + outer.corners && !status; ++c) {
       int side = -1;
       const Selector sides[4] = {Selector::Front, Selector::Right, Selector::Back, Selector::Left};
       for (int i = 0; i < 4; ++i) {
-        if (side < 0 && matches(pool, base, Component::FaceEdges, c, sides[i], axes)) side = i;
+        if (side < 0 && edges.matches(c, sides[i], axes)) side = i;
       }
       if (side < 0 || shape.angle[side] >= 90) continue;
       const vec3 from = localPosition(pool, base, c);
@@ -193,6 +194,9 @@ Status innerRectangle(MeshPool& pool, const Form& form, bool alongScope, Form& r
       }
       region.loops.push_back(std::move(points));
     }
+    // At most 160 by 160 cells, each against all edges.
+    const uint64_t edges = faceCorners(pool, form.mesh, f).corners, cells = std::min<uint64_t>(edges + 24, 160);
+    if (!countSteps(pool, cells * cells * edges)) return attempt.end(kGeometryTooLarge);
     const Rectangle r = largestRectangle(region, extent);
     if (!(r.area() > 0)) continue;
     beginFace(pool, b, face.tags);

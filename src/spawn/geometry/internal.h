@@ -35,13 +35,6 @@ inline MeshPool& readable(const MeshPool& pool) { return const_cast<MeshPool&>(p
 /// For each vertex the first one at its place. Places are one within 2e-6 of the largest extent.
 std::vector<uint32_t> weldVertices(const MeshPool& pool, const Form& form);
 
-struct MeshEdge {
-  uint32_t from, to;               ///< welded vertices, from < to
-  uint32_t corner, face;           ///< one that has it, the first
-  uint32_t faces;                  ///< how many corners have it
-  uint32_t otherCorner, otherFace; ///< the second, if there is one
-  bool opposed;                    ///< all of its faces but the first run along it the other way
-};
 /// In the order of the corners that have them first.
 std::vector<MeshEdge> meshEdges(const MeshPool& pool, const Form& form);
 /// The face of each corner.

@@ -16,6 +16,7 @@ using namespace shader;
 std::vector<uint32_t> weldVertices(const MeshPool& constPool, const Form& form) {
   MeshPool& pool = readable(constPool);
   const uint32_t count = meshVertices(pool, form.mesh);
+  countSteps(pool, count);
   std::vector<vec3> positions(count);
   vec3 low(std::numeric_limits<float>::max()), high(-std::numeric_limits<float>::max());
   for (uint32_t i = 0; i < count; ++i) {
@@ -90,6 +91,7 @@ std::vector<uint32_t> cornerFaces(const MeshPool& constPool, uint32_t mesh) {
 std::vector<MeshEdge> meshEdges(const MeshPool& constPool, const Form& form) {
   MeshPool& pool = readable(constPool);
   const std::vector<uint32_t> welded = weldVertices(pool, form);
+  countSteps(readable(pool), meshCorners(readable(pool), form.mesh));
   std::vector<MeshEdge> edges;
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> found;
   for (uint32_t f = 0; f < meshFaces(pool, form.mesh); ++f) {

@@ -105,10 +105,11 @@ Status shapeWings(MeshPool& pool, const Form& form, float front, float right, fl
   const Axes axes = axesOf(form.scope);
   const std::pair<Selector, float> sides[] = {
       {Selector::Front, front}, {Selector::Right, right}, {Selector::Back, back}, {Selector::Left, left}};
-  std::vector<float> distances(meshCorners(pool, form.mesh), 0.0f);
+  const Components edges(pool, form, Component::FaceEdges);
+  std::vector<float> distances(edges.count(), 0.0f);
   for (uint c = 0; c < distances.size(); ++c) {
     for (const auto& [selector, distance] : sides) {
-      if (distance > 0 && matches(pool, form, Component::FaceEdges, c, selector, axes)) distances[c] = distance;
+      if (distance > 0 && edges.matches(c, selector, axes)) distances[c] = distance;
     }
   }
   std::vector<Form> pieces;

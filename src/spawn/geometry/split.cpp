@@ -77,6 +77,71 @@ Status slice(MeshPool& pool, const Form& form, uint32_t axis, float from, float 
   return attempt.end(status);
 }
 
+std::vector<float> placesOfAreas(MeshPool& pool, const Form& form, uint32_t axis, std::span<const double> areas) {
+  // The area below a height c is the sum over edges of the integral of min(height, c) along the horizontal in the
+  // face's plane, by the steepness (Green).
+  struct Edge {
+    double low, high, across; // heights and, signed, how far it goes across
+  };
+  struct Step {
+    double at, area;
+  };
+  std::vector<Edge> edges;
+  std::vector<Step> steps;
+  double low = 1e300, high = -1e300, all = 0;
+  for (uint f = 0; f < meshFaces(pool, form.mesh); ++f) {
+    const glm::dvec3 n(localNormal(pool, form, f));
+    const double steep = std::sqrt(std::max(0.0, 1.0 - n[int(axis)] * n[int(axis)]));
+    const Face face = faceOf(pool, form.mesh, f);
+    glm::dvec3 up(0);
+    up[int(axis)] = 1;
+    const glm::dvec3 across = steep > 1e-6 ? glm::cross(n, up) / steep : glm::dvec3(0);
+    if (steep <= 1e-6)
+      steps.push_back({double(localPosition(pool, form, faceCorners(pool, form.mesh, f).firstCorner)[int(axis)]),
+                       double(faceArea(pool, form, f))});
+    for (uint l = 0; l < face.loops; ++l) {
+      const Loop loop = loopOf(pool, form.mesh, face.firstLoop + l);
+      for (uint c = loop.firstCorner; c < loop.firstCorner + loop.corners; ++c) {
+        const glm::dvec3 p(localPosition(pool, form, c)), q(localPosition(pool, form, nextCorner(loop, c)));
+        const double hp = p[int(axis)], hq = q[int(axis)];
+        low = std::min(low, hp);
+        high = std::max(high, hp);
+        // (up in the face, across) is left-handed about the normal.
+        if (steep > 1e-6) edges.push_back({std::min(hp, hq), std::max(hp, hq), glm::dot(q - p, across) / steep});
+      }
+    }
+  }
+  const auto below = [&](double c) {
+    double sum = 0;
+    for (const Edge& e : edges) {
+      const double a = e.low - low, b = e.high - low, x = c - low;
+      // The mean of min(height, x) along the edge.
+      const double mean = b <= x || b <= a ? std::min((a + b) / 2, x)
+                          : a >= x         ? x
+                                           : x - (x - a) * (x - a) / (2 * (b - a));
+      sum += mean * e.across;
+    }
+    for (const Step& s : steps) sum += s.at <= c ? s.area : 0.0;
+    return sum;
+  };
+  std::vector<float> places;
+  all = meshFaces(pool, form.mesh) ? below(high) : 0.0;
+  for (const double area : areas) {
+    if (!countSteps(pool, 48ull * edges.size())) return std::vector<float>(areas.size(), 0.0f);
+    if (area <= 0 || area >= all) {
+      places.push_back(area <= 0 ? 0.0f : std::max(float(high), form.scope.size[int(axis)]));
+      continue;
+    }
+    double from = low, to = high;
+    for (int i = 0; i < 48; ++i) {
+      const double middle = (from + to) / 2;
+      (below(middle) < area ? from : to) = middle;
+    }
+    places.push_back(float((from + to) / 2));
+  }
+  return places;
+}
+
 Status sliceUv(MeshPool& pool, const Form& form, uint32_t set, uint32_t axis, float from, float to, Form& piece) {
   if (axis > 1 || set >= kMaxUvSets || !std::isfinite(from) || !std::isfinite(to)) return kGeometryBadArgument;
   Attempt attempt(pool);

@@ -5,6 +5,7 @@
 #include "spawn/geometry/internal.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace gpgp::spawn {
 
@@ -129,12 +130,14 @@ Status triangulateFace(MeshPool& pool, const Form& form, uint32_t f, std::vector
   }
   size_t left = outline.size();
   uint32_t at = 0;
+  uint64_t looked = 0;
   const auto isEar = [&](uint32_t i, bool flat) {
     const Point &a = outline[previous[i]], &b = outline[i], &c = outline[next[i]];
     const double area = areaOf(a, b, c);
     if (flat) return area == 0;
     if (!(area > 0)) return false;
     for (uint32_t j = next[next[i]]; j != previous[i]; j = next[j]) {
+      ++looked;
       const Point& q = outline[j];
       if (areaOf(outline[previous[j]], q, outline[next[j]]) > 0) continue; // only reflex corners can be within
       if (blocks(a, b, c, q)) return false;
@@ -142,6 +145,7 @@ Status triangulateFace(MeshPool& pool, const Form& form, uint32_t f, std::vector
     return true;
   };
   while (left > 2) {
+    if (!countSteps(pool, left + std::exchange(looked, 0))) return kGeometryTooLarge;
     uint32_t found = at;
     bool any = false;
     for (const bool flat : {false, true}) {

@@ -102,6 +102,7 @@ Status makeWaves(MeshPool& pool, const Form& form, uint32_t face, std::span<cons
   }
   Skeleton s = skeletonOf(pool, points, o.count, o.loops, o.loopCount, until);
   if (s.status) return leave(s.status);
+  countSteps(pool, uint64_t(o.count) * o.count / 8); // fronts against each other
   waves.nodes.reserve(s.nodes);
   for (uint n = 0; n < s.nodes; ++n) {
     waves.nodes.push_back(n < o.count ? vec3(pointAt(pool, points, n), 0.0f) : nodePosition(pool, s, n));
