@@ -97,7 +97,7 @@ if [[ $quick == no ]]; then
   if hasTimeFor 20 "Windows, under Wine"; then
     step "Windows, under Wine (tests/windows.sh)" windowsUnderWine || true
   fi
-  if hasTimeFor 100 "build and tests, asan-ubsan"; then buildAndTest asan-ubsan; fi
+  if hasTimeFor 170 "build and tests, asan-ubsan"; then buildAndTest asan-ubsan; fi
 fi
 
 finish
