@@ -295,6 +295,8 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   const auto table = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
                                              std::pmr::get_default_resource());
   if (!table) throw Failure(table.error().text);
+  if (options.reference && !table->plan.empty())
+    throw Failure(name + ": the reference knows no masks, filters and blend modes; draw it without --reference");
   if (!table->plan.empty()) { // a first guess; the report says what is needed
     const uint64_t pixels = uint64_t(size.width + 128) * (size.height + 128) * 3;
     canvasInfo.maxLayerPixels =
