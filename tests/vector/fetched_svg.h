@@ -10,7 +10,8 @@
 
 namespace gpgp::test {
 
-/// Nothing where the file is not there, for tests to skip; a failure where it cannot be imported.
+/// Without masks, filters and blend modes, which the references of these tests do not have (layers_test.cpp tests
+/// those). Nothing where the file is not there, for tests to skip; a failure where it cannot be imported.
 inline std::optional<vector::svg::Imported> fetchedSvg(const std::string& name) {
   const std::string file = std::string(GPGP_TEST_DATA) + "/" + name;
   if (!std::filesystem::exists(file)) {
@@ -19,7 +20,9 @@ inline std::optional<vector::svg::Imported> fetchedSvg(const std::string& name) 
   }
   const auto bytes = host::readFile(file);
   vector::svg::Reporter reporter(nullptr, nullptr, name.c_str());
-  auto svg = vector::svg::importSvg(std::as_bytes(std::span(bytes)), reporter);
+  vector::svg::ImportDetail detail;
+  detail.layers = false;
+  auto svg = vector::svg::importSvg(std::as_bytes(std::span(bytes)), reporter, {}, {}, detail);
   if (!svg) {
     ADD_FAILURE() << svg.error().text;
     return {};

@@ -80,12 +80,13 @@ struct Scene {
 };
 
 struct LayersTest : CanvasTest {
-  uint32_t layerPixels = 1 << 22, operations = 0;
+  uint32_t layerPixels = 1 << 22, operations = 0, drawings = 0;
   void makeLayerCanvas(uint32_t size = 256) {
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
     info.base = {"canvas with layers", device.graphics().family, 0, VK_FALSE};
     info.maxWidth = info.maxHeight = size;
     info.maxPaths = 4096;
+    info.maxDrawings = drawings;
     info.targets = canvasTargets;
     info.maxLayerPixels = layerPixels;
     info.maxLayerOperations = operations;

@@ -254,6 +254,48 @@ TEST_F(LayersTest, ABlurTurnsWithItsSpace) {
   }
 }
 
+/// One deviation small, the other large, in a turned space: many samples, which are taken with strides.
+TEST_F(LayersTest, AnUnevenTurnedBlurOfAnEdgeIsTheErrorFunction) {
+  makeLayerCanvas();
+  for (const float deviation : {15.f, 40.f, 90.f}) {
+    Scene scene;
+    GpgpLayer layer = scene.filter({step(GPGP_FILTER_GAUSSIAN_BLUR, {0, deviation})});
+    const double angle = 0.6;
+    const float c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
+    const float transform[6] = {c, s, -s, c, 100, 100};
+    std::copy_n(transform, 6, layer.filterTransform);
+    const uint32_t group = scene.group(0, 1, &layer);
+    TestPath half; // what lies above the line through the middle, along the space's x axis
+    const auto corner = [&](float x, float y) { return std::pair(c * x - s * y + 100, s * x + c * y + 100); };
+    const auto [x0, y0] = corner(-3000, -3000);
+    const auto [x1, y1] = corner(3000, -3000);
+    const auto [x2, y2] = corner(3000, 0);
+    const auto [x3, y3] = corner(-3000, 0);
+    half.move(x0, y0).line(x1, y1).line(x2, y2).line(x3, y3).close();
+    half.color = {1, 1, 1, 1};
+    scene.add(half, group);
+    const auto pixels = draw(scene, 200);
+    for (int y = 0; y < 200; y += 5)
+      for (int x = 0; x < 200; x += 5) {
+        const double v = -std::sin(angle) * (x + 0.5 - 100) + std::cos(angle) * (y + 0.5 - 100);
+        ASSERT_NEAR(pixels[static_cast<size_t>(y * 200 + x)].a, cumulative(-v / static_cast<double>(deviation)), 0.02)
+            << deviation << " at " << x << ", " << y;
+      }
+  }
+}
+
+/// A radius far beyond the canvas: dilated, all is covered; eroded, nothing is.
+TEST_F(LayersTest, MorphologyReachesAsFarAsThereIsSomething) {
+  makeLayerCanvas();
+  for (const int mode : {0, 1}) {
+    Scene scene;
+    const GpgpLayer layer = scene.filter({step(GPGP_FILTER_MORPHOLOGY, {9000, 9000}, mode)});
+    scene.add(solid(20, 20, 40, 40), scene.group(0, 1, &layer));
+    const auto pixels = draw(scene, 64);
+    for (const Rgba& p : pixels) ASSERT_NEAR(p.a, mode, 1e-3);
+  }
+}
+
 TEST_F(LayersTest, ADropShadowLiesBehind) {
   makeLayerCanvas();
   Scene scene;
@@ -356,6 +398,64 @@ TEST_F(LayersTest, ItemsComeInOrder) {
   expectNear(at(46, 36), {1, 0, 0, 1}, 1e-3, "in front of all");
   gpgpDestroyAsset(layered);
   gpgpDestroyAsset(other);
+}
+
+/// Regions of layers lie beside and below the canvas in one picture: what is plain stays out of them.
+TEST_F(LayersTest, WhatIsPlainStaysOnTheCanvas) {
+  makeLayerCanvas();
+  Scene scene, plain, above;
+  const GpgpLayer layer = scene.filter({step(GPGP_FILTER_OFFSET, {16, 0})});
+  scene.add(solid(4, 4, 12, 12, {0, 1, 0, 1}), scene.group(0, 1, &layer));
+  plain.add(solid(-400, -400, 800, 800, {1, 0, 0, 0.5f}));
+  above.add(solid(0, -40, 64, -2, {0, 0, 1, 1}));
+  const GpgpAsset layered = makeDrawing(scene.paths(), scene.groups), other = makeDrawing(plain.paths()),
+                  hidden = makeDrawing(above.paths());
+  const auto pixels = raster({place(other), place(layered), place(hidden)}, 64, 64, 16);
+  for (uint32_t y = 0; y < 64; ++y)
+    for (uint32_t x = 0; x < 64; ++x)
+      if (x >= 20 && x < 28 && y >= 4 && y < 12)
+        expectNear(pixels[y * 64 + x], {0, 1, 0, 1}, 1e-3, "the layer, moved");
+      else
+        expectNear(pixels[y * 64 + x], {0.5, 0, 0, 0.5}, 1e-3, std::to_string(x) + ", " + std::to_string(y));
+  for (const GpgpAsset asset : {layered, other, hidden}) gpgpDestroyAsset(asset);
+}
+
+TEST_F(LayersTest, ClipsOfAListBehindALayerLieWhereTheListLies) {
+  makeLayerCanvas();
+  Scene scene;
+  const GpgpLayer layer = scene.filter({step(GPGP_FILTER_OFFSET, {4, 0})});
+  scene.add(solid(20, 20, 40, 40, {0, 1, 0, 1}), scene.group(0, 1, &layer));
+  const GpgpAsset layered = makeDrawing(scene.paths(), scene.groups);
+  TestList list(context);
+  list.clip({2, 2, 62, 62}, {8, 8, 8, 8}).add(rectangle(0, 0, 64, 64, {0, 0, 1, 1})).pop();
+  const auto pixels = raster({place(layered), list.item()}, 64, 64, 16);
+  expectNear(pixels[32 * 64 + 8], {0, 0, 1, 1}, 1e-3, "inside");
+  expectNear(pixels[32 * 64 + 60], {0, 0, 1, 1}, 1e-3, "inside, right");
+  expectNear(pixels[3 * 64 + 3], {0, 0, 0, 0}, 1e-3, "beyond the round corner");
+  expectNear(pixels[32 * 64 + 1], {0, 0, 0, 0}, 1e-3, "outside");
+  gpgpDestroyAsset(layered);
+}
+
+/// More regions than one column of the raster holds; the sum of all is what a formula says.
+TEST_F(LayersTest, ManyLayersOnOneAnotherFit) {
+  layerPixels = 1 << 24;
+  operations = 4096;
+  drawings = 1024;
+  makeLayerCanvas();
+  Scene scene;
+  GpgpLayer layer = plainLayer();
+  layer.blend = GPGP_BLEND_MULTIPLY;
+  double want = 1;
+  scene.add(solid(0, 0, 256, 256, {1, 1, 1, 1}));
+  for (int i = 0; i < 80; ++i) {
+    scene.add(solid(0, 0, 256, 256, {0.98f, 0.98f, 0.98f, 1}), scene.group(0, 1, &layer));
+    want *= static_cast<double>(0.98f);
+  }
+  GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+  const auto pixels = draw(scene, 256, &report);
+  EXPECT_EQ(report.base.status, GPGP_SUCCESS);
+  for (const uint32_t at : {0u, 255u, 128u * 256 + 128, 65535u})
+    expectNear(pixels[at], {want, want, want, 1}, 0.01, std::to_string(at));
 }
 
 TEST_F(LayersTest, WhatFindsNoRoomIsLeftOutAndCounted) {
@@ -513,6 +613,57 @@ TEST(BakedLayers, AreReadOrRefused) {
       }
     }
   EXPECT_GT(refused, 500u);
+}
+
+/// What nothing refers to is refused, so that the size of what is drawn bounds the work of reading.
+TEST(BakedLayers, HoldNothingThatIsNotDrawn) {
+  Scene scene;
+  GpgpLayer layer = scene.filter({step(GPGP_FILTER_GAUSSIAN_BLUR, {3, 3}), step(GPGP_FILTER_TURBULENCE, {0, 0, 2})});
+  layer.mask = 2;
+  const uint32_t group = scene.group(0, 1, &layer), mask = scene.group();
+  scene.add(solid(0, 0, 20, 20), group);
+  scene.add(solid(0, 0, 15, 15), mask);
+  const auto memory = std::pmr::get_default_resource();
+  const auto made = vector::makeDrawing(scene.paths(), scene.groups, memory);
+  ASSERT_TRUE(made);
+  const auto errorOf = [&](const std::function<void(vector::LayerPlan&)>& change) {
+    vector::Drawing changed = *made;
+    change(changed.plan);
+    const auto loaded = vector::loadBaked(vector::bake(changed, memory), memory);
+    return loaded ? std::string() : std::string(loaded.error().text);
+  };
+  using Plan = vector::LayerPlan;
+  EXPECT_EQ(errorOf([](Plan&) {}), "");
+  // Steps that no check would see.
+  const std::string stray = "baked drawing: a step is in no filter";
+  const std::string limits = "baked drawing: its layers are too deep in each other, too many, or not in it";
+  EXPECT_EQ(errorOf([](Plan& p) { p.steps.push_back(p.steps[0]); }), stray);
+  EXPECT_EQ(errorOf([](Plan& p) { p.steps.emplace_back().values[0] = NAN; }), stray);
+  EXPECT_EQ(errorOf([](Plan& p) { --p.nodes[0].stepCount; }), stray);
+  EXPECT_EQ(errorOf([](Plan& p) { p.nodes.push_back(p.nodes[0]); }),
+            "baked drawing: a layer refers to what is not there"); // two filters with the same steps
+  // Sequences and layers that nothing shows; of runs alone they are counted as well.
+  EXPECT_EQ(errorOf([](Plan& p) { p.sequences.push_back(p.sequences[0]); }), limits);
+  EXPECT_EQ(errorOf([](Plan& p) {
+              p.nodes.push_back(p.nodes[0]);
+              p.nodes.back().filtered = p.nodes.back().stepCount = 0;
+            }),
+            limits);
+  const auto runs = [&](size_t count) {
+    return errorOf([&](Plan& p) {
+      const vector::LayerToken last = p.tokens.back();
+      p.sequences[0] = {static_cast<uint32_t>(p.tokens.size()), static_cast<uint32_t>(count)};
+      p.tokens.insert(p.tokens.end(), count - 1, {0, 0});
+      p.tokens.push_back(last);
+    });
+  };
+  EXPECT_EQ(runs(1000), "");
+  EXPECT_EQ(runs(vector::kMaxLayerNodes + 1), limits);
+  EXPECT_EQ(errorOf([](Plan& p) { // the mask
+              p.sequences[1] = {static_cast<uint32_t>(p.tokens.size()), vector::kMaxLayerNodes + 1};
+              p.tokens.insert(p.tokens.end(), vector::kMaxLayerNodes + 1, {0, 0});
+            }),
+            limits);
 }
 
 } // namespace

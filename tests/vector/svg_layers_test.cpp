@@ -749,6 +749,11 @@ TEST(SvgLayers, HostileFilesAreBounded) {
   const Import long_ = filtered(repeated("<feOffset dx='1'/>", 10'000));
   EXPECT_EQ(saidOf(long_), "W line 2: filter has more steps than are supported: <rect> is drawn without it\n");
   EXPECT_EQ(long_.drawing.paths.size(), 1u);
+  // Nor is there anything of what the steps show.
+  const Import image = page("<defs><path id='d' d='M0 0h9v9'/></defs><filter id='f'><feImage href='#d'/>" +
+                            repeated("<feOffset dx='1'/>", 300) + "</filter>" + kRect + "filter='url(#f)'/>");
+  EXPECT_EQ(saidOf(image), "W line 2: filter has more steps than are supported: <rect> is drawn without it\n");
+  EXPECT_EQ(image.drawing.paths.size(), 1u);
   EXPECT_EQ(saidOf(filtered("<feMerge>" + repeated("<feMergeNode/>", 10'000) + "</feMerge>")),
             "W line 2: filter has more steps than are supported: <rect> is drawn without it\n");
   // Sizes that no one can mean are taken as the largest that makes a difference.
@@ -762,6 +767,28 @@ TEST(SvgLayers, HostileFilesAreBounded) {
   EXPECT_EQ(first("<feOffset dx='1e30' dy='-1e300'/>"), "offset S [6 18 54 42] 3e+07 -3e+07");
   EXPECT_EQ(first("<feTurbulence baseFrequency='1e30' numOctaves='1000000'/>"),
             "turbulence/1 [6 18 54 42] 1e+06 1e+06 16");
+  EXPECT_EQ(first("<feColorMatrix type='saturate' values='1e12'/>"),
+            "matrix S [6 18 54 42] 2.361e+07 -2.145e+07 -2.16e+06 0 0 -6.39e+06 8.55e+06 -2.16e+06 0 0 -6.39e+06 "
+            "-2.145e+07 2.784e+07 0 0 0 0 0 1");
+  for (const char* function : {"brightness(1e12)", "contrast(1e12)", "saturate(1e12)", "contrast(1e300)"})
+    EXPECT_EQ(saidOf(page(kRect + "style='filter:" + function + "'/>")), "") << function; // expectSound looks at values
+  const Import contrast = page(kRect + "style='filter:contrast(1e12)'/>");
+  ASSERT_EQ(layersOf(contrast).size(), 1u); // half of the intensity stays in the middle
+  EXPECT_EQ(text(layersOf(contrast)[0].layer->steps[0].values, 5), "3e+07 0 0 0 -1.5e+07");
+  // Of kernels and their divisors the ratio counts.
+  const auto convolved = [&](const std::string& attributes) {
+    const Import i = filtered("<feConvolveMatrix order='2 1' " + attributes + "/>");
+    EXPECT_EQ(saidOf(i), "") << attributes;
+    if (layersOf(i).size() != 1) return std::string();
+    const GpgpFilterStep& s = layersOf(i)[0].layer->steps[0];
+    return text(s.table, s.tableCount) + " / " + text(static_cast<double>(s.values[4]));
+  };
+  EXPECT_EQ(convolved("kernelMatrix='1e9 0'"), "3e+07 0 / 3e+07");
+  EXPECT_EQ(convolved("kernelMatrix='1e300 1e300'"), "1.5e+07 1.5e+07 / 3e+07");
+  EXPECT_EQ(convolved("kernelMatrix='3e8 -3e8' divisor='100'"), "3e+07 -3e+07 / 10");
+  EXPECT_EQ(convolved("kernelMatrix='1 2' divisor='3e8'"), "0.1 0.2 / 3e+07");
+  EXPECT_EQ(convolved("kernelMatrix='1 2' divisor='1e-60'"), "1 2 / 3");
+  EXPECT_EQ(convolved("kernelMatrix='1 -1' divisor='1e-60'"), "1 -1 / 1");
   EXPECT_EQ(saidOf(filtered("<feConvolveMatrix order='1000' kernelMatrix='" + repeated("1 ", 1'000'000) + "'/>")),
             "W line 2: order above 32 is not supported: <feConvolveMatrix> is drawn without it\n");
   // Groups that fade in each other.
@@ -800,6 +827,11 @@ TEST(SvgLayers, HostileFilesAreBounded) {
   EXPECT_EQ(page("<mask id='m'>" + kWhite + "</mask><g transform='scale(0 1)'>" + kRect + "mask='url(#m)'/></g>")
                 .drawing.groups.size(),
             0u);
+  for (const char* attribute : {"mask='url(#m)'", "style='filter:blur(2px)'"}) // it has one, but not as floats
+    EXPECT_EQ(saidOf(page("<mask id='m'>" + kWhite + "</mask><g transform='matrix(1 1 1 1.00000005 0 0)'>" + kRect +
+                          attribute + "/></g>")),
+              "W line 2: mask, filter or mix-blend-mode has coordinates that are too large or too small: <rect> is "
+              "drawn without it\n");
 }
 
 } // namespace

@@ -64,7 +64,7 @@ GPGP_FN float gaussian(float x, float deviation) {
   const float t = x / deviation;
   return exp(-0.5f * t * t);
 }
-// Along a line through the pixel: `count` samples on each side.
+// Along a line through the pixel: `count` samples on each side, values[0].w pixels apart.
 GPGP_FN vec4 blurAt(OperationRecord o, int x, int y) {
   const vec2 way = vec2(o.values[0].x, o.values[0].y);
   const bool level = way.y == 0.0f, upright = way.x == 0.0f;
@@ -73,11 +73,12 @@ GPGP_FN vec4 blurAt(OperationRecord o, int x, int y) {
   for (int k = 1; k <= int(o.count); ++k) {
     const float weight = gaussian(float(k), o.values[0].z);
     vec4 both;
+    const int apart = k * int(o.values[0].w);
     if (level || upright) {
-      const int i = level ? k : 0, j = level ? 0 : k;
+      const int i = level ? apart : 0, j = level ? 0 : apart;
       both = texelAt(o.a, x - i, y - j) + texelAt(o.a, x + i, y + j);
     } else {
-      const float u = float(x) + 0.5f, v = float(y) + 0.5f, s = float(k);
+      const float u = float(x) + 0.5f, v = float(y) + 0.5f, s = float(apart);
       both = readBetween(o.a, u - s * way.x, v - s * way.y) + readBetween(o.a, u + s * way.x, v + s * way.y);
     }
     sum += both * weight;

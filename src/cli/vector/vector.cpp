@@ -142,7 +142,8 @@ std::optional<Canvas> largerCanvas(Session& session, GpgpCanvasCreateInfo& info,
       next.maxTileEntries = wanted(report.tileEntries, report.tileEntriesGiven, (eighths - ofWords) / 8.0);
       next.maxTileWords = wanted(report.tileWords, report.tileWordsGiven, ofWords / 8.0);
       next.maxDrawings = std::max(info.maxDrawings, std::min(report.items, 65536u));
-      next.maxLayerPixels = std::max(info.maxLayerPixels, std::min(report.layerPixels, 1u << 28));
+      if (report.layerPixels != UINT32_MAX) // which no budget holds
+        next.maxLayerPixels = std::max(info.maxLayerPixels, std::min(report.layerPixels, 1u << 28));
       next.maxLayerOperations = std::max(info.maxLayerOperations, std::min(report.layerOperations, 65536u));
       const bool layers = next.maxDrawings > report.itemsGiven || next.maxLayerPixels > report.layerPixelsGiven ||
                           next.maxLayerOperations > report.layerOperationsGiven;
@@ -158,6 +159,8 @@ std::optional<Canvas> largerCanvas(Session& session, GpgpCanvasCreateInfo& info,
 
 /// What is missing, and what would have held it. `said`: the budget was.
 std::string omitted(const GpgpCanvasReport& report, uint32_t paths, bool said) {
+  if (report.layerPixels == UINT32_MAX)
+    return "the drawing's layers were left out: one of them, or all side by side, are larger than 16384 x 16384 pixels";
   if (report.layerPixels > report.layerPixelsGiven || report.layerOperations > report.layerOperationsGiven)
     return "the drawing's layers were left out: they need " + std::to_string(report.layerPixels) + " pixels and " +
            std::to_string(report.layerOperations) + " operations, and there is room for " +

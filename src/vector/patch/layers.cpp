@@ -113,9 +113,13 @@ class Measure {
 public:
   Measure(const LayerPlan& plan, std::pmr::memory_resource* memory)
       : plan_(plan), sequences_(plan.sequences.size(), Size{}, memory), nodes_(plan.nodes.size(), Size{}, memory) {}
-  bool good(const LayerSequence& s, uint32_t depth) {
+  /// Whether the drawing's sequence is within the limits and holds all nodes and all other sequences. Each is then
+  /// counted in it at least once, so that kMaxLayerNodes bounds every walk through the plan.
+  bool good() {
     Size size;
-    return good(s, depth, size);
+    const auto done = [](const Size& s) { return s.done; };
+    return goodReference(1, 0, size) && std::all_of(sequences_.begin(), sequences_.end(), done) &&
+           std::all_of(nodes_.begin(), nodes_.end(), done);
   }
 
 private:
@@ -128,7 +132,7 @@ private:
   bool good(const LayerSequence& s, uint32_t depth, Size& all) {
     if (depth > GPGP_MAX_LAYER_DEPTH) return false;
     for (const LayerToken& token : plan_.tokensOf(s)) {
-      ++all.count;
+      if (++all.count > kMaxLayerNodes) return false;
       if (!token.layer) continue;
       Size& size = nodes_[token.index];
       if (!size.done) {
@@ -263,11 +267,13 @@ Result<void> checkPlan(const LayerPlan& plan, size_t paths, std::pmr::memory_res
       return bad("a sequence refers to what is not there");
   for (const LayerSequence& s : plan.sequences)
     if (!range(s.firstToken, s.tokenCount, plan.tokens.size())) return bad("a sequence is not there");
-  for (const LayerNode& n : plan.nodes) {
+  uint64_t nextStep = 0;
+  for (const LayerNode& n : plan.nodes) { // their steps one after another, so that each is one filter's
     if (!range(n.content.firstToken, n.content.tokenCount, plan.tokens.size()) || n.clip > plan.runs.size() ||
         n.mask > plan.sequences.size() || n.filtered > 1 || !range(n.firstStep, n.stepCount, plan.steps.size()) ||
-        (n.stepCount && !n.filtered))
+        (n.stepCount && (!n.filtered || n.firstStep != nextStep)))
       return bad("a layer refers to what is not there");
+    nextStep += n.stepCount;
     if (wrongNode(n)) return bad("a layer is out of range");
     const auto steps = plan.stepsOf(n);
     for (size_t i = 0; i < steps.size(); ++i) {
@@ -279,11 +285,10 @@ Result<void> checkPlan(const LayerPlan& plan, size_t paths, std::pmr::memory_res
       if (wrongStep(s)) return bad("a filter's step is out of range");
     }
   }
+  if (nextStep != plan.steps.size()) return bad("a step is in no filter");
   if (plan.tables.size() % 4 != 0) return bad("a filter's table has an end that shaders do not read");
   if (!sane(plan.tables)) return bad("a filter's table is not finite");
-  Measure measure(plan, memory);
-  for (const LayerSequence& s : plan.sequences)
-    if (!measure.good(s, 0)) return bad("its layers are too deep in each other, or too many");
+  if (!Measure(plan, memory).good()) return bad("its layers are too deep in each other, too many, or not in it");
   return {};
 }
 

@@ -54,6 +54,13 @@ uint32_t Gather::addSource(const Map& map, float opacity, uint32_t firstImage, c
   if (clip.hidden ||
       !placeItem(moved, info_.width, info_.height, item, region_.x - region_.box.left, region_.y - region_.box.top))
     return kNone;
+  shader::vec4 scissor = clip.scissor;
+  if (planner_ && planner_->composites()) { // other regions lie beside this one
+    const PixelBox& box = region_.box;
+    scissor = {std::max(scissor.x, static_cast<float>(box.left)), std::max(scissor.y, static_cast<float>(box.top)),
+               std::min(scissor.z, static_cast<float>(box.right)), std::min(scissor.w, static_cast<float>(box.bottom))};
+    if (!(scissor.x < scissor.z && scissor.y < scissor.w)) return kNone;
+  }
   full_ = full_ || sources == budgets_.items;
   ++sourcesNeeded_;
   if (full_) return kNone;
@@ -61,7 +68,7 @@ uint32_t Gather::addSource(const Map& map, float opacity, uint32_t firstImage, c
   item.firstImage = firstImage;
   const auto side = [](float v, int by) { return std::abs(v) < shader::kUnbounded ? v + static_cast<float>(by) : v; };
   const int x = region_.x - region_.box.left, y = region_.y - region_.box.top;
-  item.scissor = {side(clip.scissor.x, x), side(clip.scissor.y, y), side(clip.scissor.z, x), side(clip.scissor.w, y)};
+  item.scissor = {side(scissor.x, x), side(scissor.y, y), side(scissor.z, x), side(scissor.w, y)};
   item.clip = clip.chain;
   item.layer = clip.layer;
   groups = groups || item.clip || item.layer;
@@ -121,12 +128,19 @@ Result<void> Gather::planDrawing(const DrawingAsset& drawing, const Map& map, fl
   return {};
 }
 
-/// A thing without layers: behind a drawing with layers it goes into another region.
-void Gather::beginPlain() {
+/// The region of the next thing without layers: behind a drawing with layers it is another one.
+void Gather::lookAtPlain() {
   if (!planner_) return;
   const auto runs = planner_->runs();
-  if (nextRun_ < runs.size() && runs[nextRun_].unit == unit_) base_ = runs[nextRun_++].region;
-  region_ = base_;
+  region_ = nextRun_ < runs.size() && runs[nextRun_].unit == unit_ ? runs[nextRun_].region : base_;
+}
+
+void Gather::beginPlain() {
+  if (!planner_) return;
+  lookAtPlain();
+  const auto runs = planner_->runs();
+  if (nextRun_ < runs.size() && runs[nextRun_].unit == unit_) ++nextRun_;
+  base_ = region_;
   full_ = full_ || unit_ >= planner_->units();
   ++unit_;
 }
@@ -321,6 +335,7 @@ Result<void> Gather::addList(const List& list, const GpgpCanvasItem& item, const
     return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".list needs %u images from images[%u] on; imageCount is %u",
                  list.images(), item.firstImage, info_.imageCount);
   const Map map = toMap(item.transform, item.perspective);
+  lookAtPlain(); // clips lie where what they cut lies
   if (auto ok = resolveClips(list, map, own); !ok) return ok;
   resolveGroups(list, item.opacity);
   // Shapes and texts that follow each other in the same space share a source.

@@ -55,7 +55,8 @@ public:
   /// in others.
   Gather(core::Context& context, const ItemBudgets& budgets, ItemTables& tables, shader::PlacementRecord* placed,
          const GpgpCanvasInfo& info, uint32_t smallGlyphRoom, LayerPlanner* planner = nullptr)
-      : planner_(planner), context_(context), budgets_(budgets), tables_(tables), placed_(placed), info_(info),
+      : planner_(planner), base_{{0, 0, static_cast<int>(info.width), static_cast<int>(info.height)}, 0, 0},
+        region_(base_), context_(context), budgets_(budgets), tables_(tables), placed_(placed), info_(info),
         smallGlyphRoom_(smallGlyphRoom) {}
 
   /// What the planner must know of an item; before all that follows.
@@ -82,6 +83,7 @@ private:
   core::Result<void> planDrawing(const DrawingAsset& drawing, const Map& map, float opacity, const Chain& own);
   void addRun(const DrawingAsset& drawing, uint32_t run, uint32_t source, uint32_t slot);
   core::Result<void> addLayered(const DrawingAsset& drawing, uint32_t firstImage);
+  void lookAtPlain();
   void beginPlain();
   Chain ownOf(const GpgpCanvasItem& item) const;
   struct Block;

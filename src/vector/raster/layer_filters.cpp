@@ -9,6 +9,39 @@ using shader::OperationRecord;
 shader::vec4 floodColor(const float* linear, float alpha, bool srgb) {
   return shader::blended({linear[0], linear[1], linear[2]}, alpha, srgb ? shader::kBlendSrgb : 0);
 }
+
+constexpr int kMostShrink = 7; // a power of two: one invocation reads as many pixels, squared
+
+/// How a blur is made of blurs with strides 1, 2, 4...: few samples for any deviation.
+struct Strides {
+  static constexpr int kMost = 24;
+  int count = 0;        // 0: nothing is blurred
+  double deviation = 0; // of each, in its strides
+  int samples = 0;      // to each side
+
+  explicit Strides(double whole) {
+    if (whole < 0.02) return;
+    const auto of = [](int n) { return (std::pow(4.0, n) - 1) / 3; }; // how variances add up
+    count = 1;
+    if (whole > 16)
+      while (whole > 3 * std::sqrt(of(count)) && count < kMost) ++count;
+    deviation = whole / std::sqrt(of(count));
+    samples = static_cast<int>(std::ceil(kBlurReach * deviation));
+  }
+  /// Of those from one on, in pixels.
+  double reach(int from) const {
+    return count > from ? (samples + 1) * (std::pow(2.0, count) - std::pow(2.0, from)) : 0;
+  }
+};
+/// What of a region is read where places outside of it stand for its nearest ones.
+PixelBox nearestIn(const PixelBox& region, const PixelBox& wanted) {
+  if (region.empty()) return {};
+  const auto low = [](int v, int from, int to) { return std::clamp(v, from, to - 2 < from ? from : to - 2); };
+  const PixelBox near{low(wanted.left, region.left, region.right), low(wanted.top, region.top, region.bottom),
+                      std::clamp(wanted.right, region.left + 2, std::max(region.right, region.left + 2)),
+                      std::clamp(wanted.bottom, region.top + 2, std::max(region.bottom, region.top + 2))};
+  return join(near, PixelBox{near.left, near.top, near.left + 2, near.top + 2});
+}
 } // namespace
 
 /// In another encoding, where that is needed.
@@ -52,6 +85,11 @@ bool LayerPlanner::filter(const Around& a, const LayerNode& node, uint32_t index
     const auto shifted = [&](double x, double y) {
       return grow(moved(need, -(space.a * x + space.c * y), -(space.b * x + space.d * y)), 1, 1);
     };
+    const auto inputBox = [&](uint32_t input) {
+      const float* r =
+          input >= GPGP_FILTER_FIRST_STEP ? steps[input - GPGP_FILTER_FIRST_STEP].region : node.filterRegion;
+      return pixels(space, Box{r[0], r[1], r[2], r[3]});
+    };
     switch (s.kind) {
     case GPGP_FILTER_FLOOD:
     case GPGP_FILTER_TURBULENCE:
@@ -69,6 +107,8 @@ bool LayerPlanner::filter(const Around& a, const LayerNode& node, uint32_t index
     case GPGP_FILTER_CONVOLVE_MATRIX:
       if (s.mode == GPGP_EDGE_NONE)
         ask(s.input, spread(need, value(0), value(1)));
+      else if (s.mode == GPGP_EDGE_DUPLICATE && space.b == 0 && space.c == 0)
+        ask(s.input, nearestIn(inputBox(s.input), spread(need, value(0), value(1))));
       else
         ask(s.input, {-kFar, -kFar, kFar, kFar});
       break;
@@ -176,7 +216,8 @@ LayerPlanner::Picture LayerPlanner::step(const Around& a, const LayerNode& node,
       o.a = recordOf(current);
       o.mode = static_cast<uint32_t>(s.mode);
       o.flags = axis == 1 ? shader::kAxisY : 0;
-      o.count = static_cast<uint32_t>(std::min(pixels, 32768.0));
+      const PixelBox all = join(box, current.box); // beyond it there is nothing
+      o.count = static_cast<uint32_t>(std::min(pixels, double(axis == 0 ? widthOf(all) : heightOf(all))));
       current = next;
     }
     const Picture result = picture(need, srgb);
@@ -331,7 +372,7 @@ LayerPlanner::Picture LayerPlanner::blur(const Picture& from, double deviationX,
   const bool oblique = ways[0][1] != 0 || ways[1][0] != 0;
   int factors[2];
   for (int k = 0; k < 2; ++k)
-    factors[k] = deviations[k] >= 8 ? 1 << std::min(static_cast<int>(std::log2(deviations[k] / 4)), 12) : 1;
+    factors[k] = deviations[k] >= 8 ? 1 << std::min(static_cast<int>(std::log2(deviations[k] / 4)), kMostShrink) : 1;
   if (oblique) factors[0] = factors[1] = std::min(factors[0], factors[1]);
   const bool shrinks = factors[0] > 1 || factors[1] > 1;
   if (shrinks) {
@@ -348,21 +389,44 @@ LayerPlanner::Picture LayerPlanner::blur(const Picture& from, double deviationX,
     // Averages and interpolation between them blur, too.
     smaller[k] = std::sqrt(std::max(f > 1 ? s * s - (f * f - 1) / 12 - f * f / 6 : s * s, 0.0)) / f;
   }
-  const auto reach = [&](int k, int axis) {
-    return smaller[k] < 0.02 ? 0.0 : std::abs(ways[k][axis]) * (std::ceil(kBlurReach * smaller[k]) + 1);
+  const Strides strides[2] = {Strides(smaller[0]), Strides(smaller[1])};
+  struct Pass {
+    int axis, index;
+    PixelBox box;
   };
-  for (int k = 0; k < 2; ++k) {
-    if (smaller[k] < 0.02) continue;
-    // The first pass leaves what the second one reads.
-    PixelBox box = k == 0 ? grow(inner, reach(1, 0), reach(1, 1)) : inner;
-    box = meet(box, grow(current.box, reach(k, 0), reach(k, 1)));
-    if (box.empty()) return Picture{{}, false, srgb, 0, 0, 0};
-    const Picture next = picture(box, srgb);
+  std::array<Pass, 2 * Strides::kMost> passes;
+  size_t count = 0;
+  uint64_t largest = 0;
+  PixelBox last = current.box;
+  for (int k = 0; k < 2; ++k)
+    for (int index = 0; index < strides[k].count; ++index) {
+      const Strides& own = strides[k];
+      // A pass leaves what those behind it read.
+      const double later = own.reach(index + 1), across = k == 0 ? strides[1].reach(0) : 0;
+      const PixelBox box = grow(inner, std::abs(ways[k][0]) * later + std::abs(ways[1][0]) * across,
+                                std::abs(ways[k][1]) * later + std::abs(ways[1][1]) * across);
+      const double taps = (own.samples + 1) * std::pow(2.0, index);
+      last = meet(box, grow(last, std::abs(ways[k][0]) * taps, std::abs(ways[k][1]) * taps));
+      if (last.empty()) return Picture{{}, false, srgb, 0, 0, 0};
+      passes[count++] = {k, index, last};
+      largest = std::max(largest, uint64_t(widthOf(last)) * heightOf(last));
+    }
+  // Of more than two passes each takes the place of the one before the last.
+  const uint64_t first = state_.pixels;
+  for (size_t i = 0; i < count; ++i) {
+    const Pass& pass = passes[i];
+    if (count > 2) state_.pixels = first + (i % 2) * largest;
+    const Picture next = picture(pass.box, srgb);
     OperationRecord& o = operation(shader::kOperationBlur, kBlur, next);
     o.a = recordOf(current);
-    o.values[0] = {narrow(ways[k][0]), narrow(ways[k][1]), narrow(smaller[k]), 0};
-    o.count = static_cast<uint32_t>(std::ceil(kBlurReach * smaller[k]));
+    o.values[0] = {narrow(ways[pass.axis][0]), narrow(ways[pass.axis][1]), narrow(strides[pass.axis].deviation),
+                   narrow(1 << pass.index)};
+    o.count = static_cast<uint32_t>(strides[pass.axis].samples);
     current = next;
+  }
+  if (count > 2) {
+    state_.pixels = first + 2 * largest;
+    state_.mostPixels = std::max(state_.mostPixels, state_.pixels);
   }
   if (shrinks) {
     const Picture large = picture(need, srgb);

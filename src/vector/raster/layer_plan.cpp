@@ -6,6 +6,29 @@ using core::makeError;
 using core::Result;
 using shader::OperationRecord;
 
+constexpr uint32_t kMostSide = 16384;           // of the raster
+constexpr uint32_t kMostDispatched = 65535 * 8; // pixels in a row, in workgroups of 8
+
+/// What has been composited onto a picture: paths that meet none of it may still be rasterised there.
+class Composited {
+public:
+  explicit Composited(bool all) : all_(all) {}
+  bool meets(const PixelBox& box) const {
+    return all_ || std::any_of(boxes_.begin(), boxes_.begin() + count_,
+                               [&](const PixelBox& other) { return !meet(box, other).empty(); });
+  }
+  void add(const PixelBox& box) {
+    PixelBox& place = boxes_[std::min(count_, uint32_t(boxes_.size() - 1))];
+    place = count_ < boxes_.size() ? box : join(place, box);
+    count_ = std::min(count_ + 1, uint32_t(boxes_.size()));
+  }
+
+private:
+  std::array<PixelBox, 32> boxes_;
+  uint32_t count_ = 0;
+  const bool all_;
+};
+
 } // namespace
 
 LayerPlanner::LayerPlanner(LayerTables& tables, const LayerBudgets& budgets, const std::array<uint32_t, 6>& passes,
@@ -24,7 +47,7 @@ LayerPlanner::LayerPlanner(LayerTables& tables, const LayerBudgets& budgets, con
 
 bool LayerPlanner::fits() const {
   constexpr uint32_t kBin = shader::kTileSize << shader::kMaxBinShift;
-  return state_.width <= 16384 && state_.height <= 16384 &&
+  return state_.width <= kMostSide && state_.height <= kMostSide && !state_.tooLarge &&
          uint64_t(state_.width) * state_.height + state_.mostPixels <= budgets_.pixels &&
          state_.width / kBin * uint64_t((state_.height + kBin - 1) / kBin) <= maxBins_ &&
          state_.operations <= tables_.operations.size() && state_.runs <= tables_.runs.size();
@@ -41,26 +64,36 @@ void LayerPlanner::endUnit(bool layered) {
 
 uint32_t LayerPlanner::pixelsNeeded() const {
   if (!layered_) return 0;
+  if (state_.width > kMostSide || state_.height > kMostSide || state_.tooLarge) return UINT32_MAX;
   return static_cast<uint32_t>(
       std::min<uint64_t>(uint64_t(state_.width) * state_.height + state_.mostPixels, UINT32_MAX));
 }
 
 LayerPlanner::Picture LayerPlanner::region(const PixelBox& box) {
+  constexpr uint32_t kBin = shader::kTileSize << shader::kMaxBinShift;
   const uint32_t width = roundUp(std::max(widthOf(box), 1u), shader::kTileSize),
                  height = roundUp(std::max(heightOf(box), 1u), shader::kTileSize);
-  if (state_.shelfX + uint64_t(width) > state_.width) { // a new row
-    state_.shelfX = 0;
-    state_.shelfY = state_.height;
+  State& s = state_;
+  if (s.shelfX + uint64_t(width) > s.width) { // a new row
+    s.shelfX = s.columnX;
+    s.shelfY = s.columnY;
   }
-  state_.width = std::max(state_.width, roundUp(width, shader::kTileSize << shader::kMaxBinShift));
-  state_.height = std::max(state_.height, state_.shelfY + height); // of the last row, which may grow
-  const Picture made{box, true, srgb_, state_.shelfX, state_.shelfY, 0};
-  state_.shelfX += width;
+  if (s.shelfY > 0 && s.shelfY + uint64_t(height) > kMostSide) { // a new column
+    s.columnX = s.shelfX = s.width;
+    s.columnY = s.shelfY = 0;
+    s.width += roundUp(widthOf(canvas_), kBin);
+  }
+  s.width = std::max(s.width, roundUp(s.shelfX + width, kBin));
+  s.columnY = std::max(s.columnY, s.shelfY + height); // of the last row, which may grow
+  s.height = std::max(s.height, s.columnY);
+  const Picture made{box, true, srgb_, s.shelfX, s.shelfY, 0};
+  s.shelfX += width;
   return made;
 }
 
 LayerPlanner::Picture LayerPlanner::picture(const PixelBox& box, bool srgb) {
   const Picture made{box, false, srgb, 0, 0, static_cast<uint32_t>(std::min<uint64_t>(state_.pixels, UINT32_MAX))};
+  state_.tooLarge = state_.tooLarge || widthOf(box) > kMostDispatched || heightOf(box) > kMostDispatched;
   state_.pixels += uint64_t(widthOf(box)) * heightOf(box);
   state_.mostPixels = std::max(state_.mostPixels, state_.pixels);
   return made;
@@ -129,7 +162,9 @@ Result<void> LayerPlanner::addLayered(const DrawingAsset& drawing, uint32_t slot
   for (const LayerToken& token : plan.tokensOf(content))
     blends = blends || (token.layer && plan.nodes[token.index].blend != GPGP_BLEND_NORMAL);
   const PixelBox box = meet(seen, pixels(map, around.bounds.sequences[0]));
-  if (!box.empty() && !blends && seen == canvas_) {
+  const double determinant = map.a * map.d - map.b * map.c;
+  if (!map.projective() && !(std::abs(determinant) > 0)) { // an item without extent
+  } else if (!box.empty() && !blends && seen == canvas_) {
     const uint32_t before = state_.operations;
     sequence(around, content, root_, clean_ && open_, opacity);
     clean_ = clean_ && open_ && state_.operations == before;
@@ -183,18 +218,22 @@ PixelBox LayerPlanner::pixels(const Map& map, const Box& box) const {
 
 /// `clean`: nothing has been composited onto the picture yet, so paths may be rasterised there.
 void LayerPlanner::sequence(const Around& a, const LayerSequence& s, const Picture& onto, bool clean, float opacity) {
+  Composited composited(!clean);
   for (const LayerToken& token : a.plan.tokensOf(s)) {
     if (token.layer) {
       const uint32_t before = state_.operations;
       layer(a, token.index, onto, opacity);
-      clean = clean && state_.operations == before;
+      if (state_.operations != before) composited.add(meet(pixels(a.map, a.bounds.nodes[token.index]), onto.box));
       continue;
     }
     const PixelBox box = meet(pixels(a.map, a.bounds.runs[token.index]), onto.box);
     if (box.empty()) continue;
-    const Picture where = clean ? onto : region(box);
+    const bool apart = composited.meets(box);
+    const Picture where = apart ? region(box) : onto;
     place(token.index, opacity, where, a.map);
-    if (!clean) composite(onto, where, 1, GPGP_BLEND_NORMAL);
+    if (!apart) continue;
+    composite(onto, where, 1, GPGP_BLEND_NORMAL);
+    composited.add(box);
   }
 }
 

@@ -94,7 +94,9 @@ private:
   using Picture = LayerTables::Picture;
   struct State {
     uint32_t width = 0, height = 0;      ///< of the raster
-    uint32_t shelfX = 0, shelfY = 0;     ///< regions lie in rows, one beside the other
+    uint32_t columnX = 0, columnY = 0;   ///< regions lie in columns; this one's left, and how far down it reaches
+    uint32_t shelfX = 0, shelfY = 0;     ///< in a column they lie in rows, one beside the other
+    bool tooLarge = false;               ///< a picture is larger than can be dispatched
     uint64_t pixels = 0, mostPixels = 0; ///< of pictures behind the raster: in use, and at most so far
     uint32_t operations = 1, runs = 0;
   };

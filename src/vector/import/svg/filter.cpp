@@ -42,7 +42,7 @@ GpgpFilterStep& Importer::FilterReader::add(GpgpFilterKind kind, const Box& regi
   step.encoding = encoding;
   store(isEmpty(region) ? Box{0, 0, 0, 0} : region, step.region);
   size_t count = 0;
-  for (const double value : values) step.values[count++] = std::clamp(static_cast<float>(value), -3e7f, 3e7f);
+  for (const double value : values) step.values[count++] = std::clamp(static_cast<float>(value), -kReach, kReach);
   layer.steps.push_back(step);
   return layer.steps.back();
 }
@@ -195,7 +195,8 @@ void Importer::FilterReader::readFunction(const FilterFunction& f) {
     for (const size_t row : {0u, 1u, 2u}) step->values[5 * row + 4] = static_cast<float>(intercept);
   };
   const bool spreads = f.kind == Kind::Blur || f.kind == Kind::DropShadow;
-  const double v = spreads ? std::min(f.amount, kMaxDeviation) : f.amount, rest = 1 - v;
+  const double most = spreads ? kMaxDeviation : static_cast<double>(kReach); // no factor below is larger than v
+  const double v = f.kind == Kind::HueRotate ? f.amount : std::min(f.amount, most), rest = 1 - v;
   switch (f.kind) {
   case Kind::Blur:
   case Kind::DropShadow: {

@@ -9,16 +9,6 @@ namespace gpgp::vector::svg {
 namespace {
 constexpr double kMaxNumber = 3e7; ///< of what a layer holds
 
-/// Whether a map has an inverse, and neither is beyond what a layer holds.
-bool isUsable(const Affine& m) {
-  const double determinant = m.a * m.d - m.b * m.c;
-  if (!(std::fabs(determinant) > 1e-20)) return false;
-  const Affine back = inverseOf(m);
-  for (const Affine& map : {m, back})
-    for (const double v : {map.a, map.b, map.c, map.d, map.e, map.f})
-      if (!(std::fabs(v) <= kMaxNumber)) return false;
-  return true;
-}
 /// Whether it is a number or a percentage, as parts of a box are.
 bool isFraction(std::string_view text) { return text.find_first_not_of("+-.0123456789eE%") == text.npos; }
 void store(const Affine& m, float (&transform)[6]) {
@@ -33,6 +23,19 @@ void addMapped(Box& box, const Affine& map, const float (&region)[4]) {
 Affine affineOf(const float (&t)[6]) {
   const auto at = [&t](size_t i) { return static_cast<double>(t[i]); };
   return {at(0), at(1), at(2), at(3), at(4), at(5)};
+}
+/// Whether a map, as a layer holds it, has an inverse, and neither is beyond what a layer holds.
+bool isUsable(const Affine& exact) {
+  float stored[6];
+  store(exact, stored);
+  const Affine m = affineOf(stored);
+  const double determinant = m.a * m.d - m.b * m.c;
+  if (!(std::fabs(determinant) > 1e-20)) return false;
+  const Affine back = inverseOf(m);
+  for (const Affine& map : {m, back})
+    for (const double v : {map.a, map.b, map.c, map.d, map.e, map.f})
+      if (!(std::fabs(v) <= kMaxNumber)) return false;
+  return true;
 }
 } // namespace
 
@@ -239,10 +242,14 @@ void Importer::grouped(pugi::xml_node node, std::string_view name, State& state,
       return *known;
     };
     if (filters) {
+      const size_t groupsUntilHere = result_.groups.size(), asideUntilHere = aside_.size();
       FilterReader reader{*this, own, node, space, box, drawnBox(before, groupsBefore, inverseOf(space)), *layer};
       if (!reader.read(style.filter)) return nothing();
       if (reader.tooMany) {
-        layer->steps.clear();
+        layer->steps.clear(); // and what they would have shown
+        if (result_.groups.size() > groupsUntilHere) madeClips_.clear();
+        result_.groups.resize(groupsUntilHere);
+        aside_.resize(asideUntilHere);
         reporter_.warn(document_.place(node),
                        "filter has more steps than are supported: " + element(node) + " is drawn without it");
       } else if (drawn == 0) { // what a filter makes of nothing has a place in the order as well

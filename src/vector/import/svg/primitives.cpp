@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace gpgp::vector::svg {
 namespace {
 constexpr double kMaxDeviation = 65536;
 constexpr size_t kMaxOrder = 32;
+constexpr double kReach = 3e7; // of a step's numbers
 
 double radiansOf(double degrees) { return degrees * std::numbers::pi / 180; }
 } // namespace
@@ -112,7 +114,7 @@ void Importer::FilterReader::colorMatrix(Primitive& p) {
   } else if (type == 3) {
     m[15] = 0.2125f, m[16] = 0.7154f, m[17] = 0.0721f;
   } else {
-    const auto rows = type == 1 ? saturation(std::max(values[0], 0.0)) : hueRotation(radiansOf(values[0]));
+    const auto rows = type == 1 ? saturation(std::clamp(values[0], 0.0, kReach)) : hueRotation(radiansOf(values[0]));
     for (size_t i = 0; i < 9; ++i) m[i / 3 * 5 + i % 3] = static_cast<float>(rows[i]);
     m[18] = 1;
   }
@@ -183,16 +185,25 @@ void Importer::FilterReader::convolveMatrix(Primitive& p) {
     return passOn(p);
   }
   const auto columns = static_cast<size_t>(order[0]), rows = static_cast<size_t>(order[1]);
-  const std::vector<double> kernel = numbers(p.node, "kernelMatrix", columns * rows);
+  std::vector<double> kernel = numbers(p.node, "kernelMatrix", columns * rows);
   if (kernel.size() != columns * rows) {
     if (p.node.attribute("kernelMatrix")) return wrong("kernelMatrix");
     importer.reporter_.ignored(importer.document_.place(p.node), importer.element(p.node) + " has no kernelMatrix");
     return transparent(p);
   }
-  double sum = 0;
+  // Only the kernel's ratio to the divisor shows: where one is beyond what a step holds, both become smaller.
+  double divisor = number(p.node, "divisor", 0), sum = 0, most = 0;
+  const auto shrink = [&](double largest) {
+    if (!(largest > kReach)) return;
+    for (double& k : kernel) k *= kReach / largest;
+    divisor *= kReach / largest;
+  };
+  const auto isZero = [](double v) { return std::abs(v) < static_cast<double>(std::numeric_limits<float>::min()); };
+  for (const double k : kernel) most = std::max(most, std::abs(k));
+  shrink(most);
   for (const double k : kernel) sum += k;
-  double divisor = number(p.node, "divisor", 0);
-  if (divisor == 0) divisor = sum != 0 ? sum : 1;
+  if (isZero(divisor)) divisor = isZero(sum) ? 1 : sum;
+  shrink(std::abs(divisor));
   const double x = number(p.node, "targetX", std::floor(order[0] / 2)),
                y = number(p.node, "targetY", std::floor(order[1] / 2));
   if (!(x >= 0 && x < order[0] && x == std::floor(x))) return wrong("targetX");
