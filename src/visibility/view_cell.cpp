@@ -43,7 +43,7 @@ core::Result<uint32_t> viewCellCameras(const GpgpViewCellInfo& info, uint32_t ro
   if (info.pointCount && !info.points)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "points is NULL, but pointCount is %u", info.pointCount);
   const CameraAxes axes(info.camera);
-  const auto& [perspective, x, y, right, up, back] = axes;
+  const glm::vec3 &y = axes.y, &right = axes.right, &up = axes.up, &back = axes.back;
   if (!std::isfinite(glm::dot(right, up) + back.x))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera.viewProjection has no direction across or along the view");
 
@@ -56,7 +56,7 @@ core::Result<uint32_t> viewCellCameras(const GpgpViewCellInfo& info, uint32_t ro
   add(glm::vec3(0));
   const uint32_t columns = (info.columns + skip - 1) / skip, rows = (info.rows + skip - 1) / skip;
   const float pixel =
-      columns ? 2 * (perspective ? info.distance : 1.0f) / (static_cast<float>(info.height) * glm::length(y)) : 0.0f;
+      columns ? 2 * (axes.perspective ? info.distance : 1.0f) / (static_cast<float>(info.height) * glm::length(y)) : 0.0f;
   for (uint32_t j = 0; j < rows; ++j)
     for (uint32_t i = 0; i < columns; ++i) {
       const glm::vec3 at(static_cast<float>(2 * i) - static_cast<float>(columns - 1),
