@@ -62,7 +62,7 @@ shaders=${GPGP_SHADERS_FROM:-$root/build/release/generated}
 # Without pkg-config libgpgp_text is not found to be possible, while all else is compiled in the same way.
 withoutText=ON
 [[ $all == no ]] || withoutText=OFF
-configure mingw -DGPGP_BUILD_TESTS=ON "-DGPGP_SHADERS_FROM=$shaders" -DGPGP_BUILD_CLI=ON -DGPGP_WITH_TEXT=ON \
+configure mingw -DGPGP_PRECOMPILED_HEADERS=OFF -DGPGP_BUILD_TESTS=ON "-DGPGP_SHADERS_FROM=$shaders" -DGPGP_BUILD_CLI=ON -DGPGP_WITH_TEXT=ON \
   -DGPGP_WITH_COMPILER=$compilers -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=$withoutText
 targets=(gpgp gpgp_static gpgp_cli paths_test core_test contract_test wrong_call)
 [[ $all == no ]] || targets+=(gpgp_text gpgp_text_static vector_text_{shape,layout,query}_test visibility_edge_test

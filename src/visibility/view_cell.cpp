@@ -56,7 +56,8 @@ core::Result<uint32_t> viewCellCameras(const GpgpViewCellInfo& info, uint32_t ro
   add(glm::vec3(0));
   const uint32_t columns = (info.columns + skip - 1) / skip, rows = (info.rows + skip - 1) / skip;
   const float pixel =
-      columns ? 2 * (axes.perspective ? info.distance : 1.0f) / (static_cast<float>(info.height) * glm::length(y)) : 0.0f;
+      columns ? 2 * (axes.perspective ? info.distance : 1.0f) / (static_cast<float>(info.height) * glm::length(y))
+              : 0.0f;
   for (uint32_t j = 0; j < rows; ++j)
     for (uint32_t i = 0; i < columns; ++i) {
       const glm::vec3 at(static_cast<float>(2 * i) - static_cast<float>(columns - 1),
