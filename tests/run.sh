@@ -98,7 +98,7 @@ if [[ $quick == no ]]; then
   if hasTimeFor 35 "build with clang"; then
     step "build with clang, without tests (build/clang)" buildWithClang || true
   fi
-  if hasTimeFor 30 "Windows, under Wine"; then
+  if hasTimeFor 75 "Windows, under Wine"; then
     step "Windows, under Wine (tests/windows.sh)" windowsUnderWine || true
   fi
   if hasTimeFor 170 "build and tests, asan-ubsan"; then buildAndTest asan-ubsan; fi
