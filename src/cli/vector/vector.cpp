@@ -169,6 +169,8 @@ std::string omitted(const GpgpCanvasReport& report, uint32_t paths, bool said) {
   const bool words = report.tileWords > report.tileWordsGiven;
   const std::string text =
       std::to_string(report.pathsDropped) + " of " + std::to_string(paths) + " paths were left out";
+  if (report.layerOperations && !words && report.tileEntries <= report.tileEntriesGiven)
+    return text + ": the device has no room for all layers side by side; a smaller --size needs less";
   if (said) // as many words come with them
     return text + "; --max-tile-entries " + std::to_string(std::max(report.tileEntries, words ? report.tileWords : 0)) +
            " would hold them, or somewhat more";
