@@ -223,25 +223,38 @@ TEST_F(LayersTest, ABlurredEdgeIsTheErrorFunction) {
     }
 }
 
+/// A space that is turned by an angle about a place of the canvas, and boxes in it.
+struct TurnedSpace {
+  double angle;
+  float middle;
+  float c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
+
+  void setFilterSpace(GpgpLayer& layer) const {
+    const float transform[6] = {c, s, -s, c, middle, middle};
+    std::copy_n(transform, 6, layer.filterTransform);
+  }
+  TestPath box(float left, float top, float right, float bottom) const {
+    const auto corner = [&](float x, float y) { return std::pair(c * x - s * y + middle, s * x + c * y + middle); };
+    const auto [x0, y0] = corner(left, top);
+    const auto [x1, y1] = corner(right, top);
+    const auto [x2, y2] = corner(right, bottom);
+    const auto [x3, y3] = corner(left, bottom);
+    TestPath path;
+    path.move(x0, y0).line(x1, y1).line(x2, y2).line(x3, y3).close();
+    path.color = {1, 1, 1, 1};
+    return path;
+  }
+};
+
 /// Turned, the blur of a small square is that of the square in its own space, turned.
 TEST_F(LayersTest, ABlurTurnsWithItsSpace) {
   makeLayerCanvas();
   for (const double angle : {0.0, 0.5, 1.5707963267948966, 2.2}) {
     Scene scene;
     GpgpLayer layer = scene.filter({step(GPGP_FILTER_GAUSSIAN_BLUR, {6, 2})});
-    const float c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
-    const float transform[6] = {c, s, -s, c, 64, 64};
-    std::copy_n(transform, 6, layer.filterTransform);
-    const uint32_t group = scene.group(0, 1, &layer);
-    TestPath square;
-    const auto corner = [&](float x, float y) { return std::pair(c * x - s * y + 64, s * x + c * y + 64); };
-    const auto [x0, y0] = corner(-10, -10);
-    const auto [x1, y1] = corner(10, -10);
-    const auto [x2, y2] = corner(10, 10);
-    const auto [x3, y3] = corner(-10, 10);
-    square.move(x0, y0).line(x1, y1).line(x2, y2).line(x3, y3).close();
-    square.color = {1, 1, 1, 1};
-    scene.add(square, group);
+    const TurnedSpace space{angle, 64};
+    space.setFilterSpace(layer);
+    scene.add(space.box(-10, -10, 10, 10), scene.group(0, 1, &layer));
     const auto pixels = draw(scene, 128);
     for (int y = 0; y < 128; y += 3)
       for (int x = 0; x < 128; x += 3) {
@@ -261,19 +274,10 @@ TEST_F(LayersTest, AnUnevenTurnedBlurOfAnEdgeIsTheErrorFunction) {
     Scene scene;
     GpgpLayer layer = scene.filter({step(GPGP_FILTER_GAUSSIAN_BLUR, {0, deviation})});
     const double angle = 0.6;
-    const float c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
-    const float transform[6] = {c, s, -s, c, 100, 100};
-    std::copy_n(transform, 6, layer.filterTransform);
-    const uint32_t group = scene.group(0, 1, &layer);
-    TestPath half; // what lies above the line through the middle, along the space's x axis
-    const auto corner = [&](float x, float y) { return std::pair(c * x - s * y + 100, s * x + c * y + 100); };
-    const auto [x0, y0] = corner(-3000, -3000);
-    const auto [x1, y1] = corner(3000, -3000);
-    const auto [x2, y2] = corner(3000, 0);
-    const auto [x3, y3] = corner(-3000, 0);
-    half.move(x0, y0).line(x1, y1).line(x2, y2).line(x3, y3).close();
-    half.color = {1, 1, 1, 1};
-    scene.add(half, group);
+    const TurnedSpace space{angle, 100};
+    space.setFilterSpace(layer);
+    // What lies above the line through the middle, along the space's x axis.
+    scene.add(space.box(-3000, -3000, 3000, 0), scene.group(0, 1, &layer));
     const auto pixels = draw(scene, 200);
     for (int y = 0; y < 200; y += 5)
       for (int x = 0; x < 200; x += 5) {

@@ -3,57 +3,31 @@
 #include "cli/shared/command.h"
 #include "cli/visibility/camera_times.h"
 #include "core/random.h"
+#include "visibility/camera_axes.h"
 
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 
 namespace gpgp::cli {
 namespace {
 constexpr uint32_t kMostCameras = 3;
-
-struct Axes {
-  glm::vec3 right, up, forward;
-};
-Axes axesOf(const View& view) {
-  const glm::mat4 rows = glm::transpose(view.camera);
-  const glm::vec3 forward = glm::normalize(glm::vec3(rows[3]));
-  const auto across = [&](const glm::vec4& row) {
-    const glm::vec3 axis(row);
-    return glm::normalize(axis - forward * glm::dot(axis, forward));
-  };
-  return {across(rows[0]), -across(rows[1]), forward};
-}
 } // namespace
 
-Motion Motion::parse(const std::string& text) {
-  Motion motion;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%f,%f,%f%c", &motion.speed, &motion.turn, &motion.latency, &rest) != 3 ||
-      !(std::abs(motion.speed) <= 1e6f) || !(motion.turn >= 0 && motion.turn <= 1080) ||
-      !(motion.latency >= 0 && motion.latency <= 10000))
-    throw Usage(
-        "--motion: expected SPEED,TURN,LATENCY: world units per second along the view, degrees per second up to "
-        "1080, milliseconds up to 10000, but not '" +
-        text + "'");
-  return motion;
-}
-
-MotionCell::MotionCell(const Motion& motion, const View& view, Size viewport) {
+MotionCell::MotionCell(const Motion& motion, float eyes, const View& view, Size viewport) {
   std::copy_n(glm::value_ptr(view.camera), 16, info.camera.viewProjection);
   info.camera.reversedDepth = view.reversed;
   info.width = viewport.width;
   info.height = viewport.height;
-  const glm::vec3 velocity = axesOf(view).forward * motion.speed;
+  const glm::vec3 velocity = -visibility::CameraAxes(info.camera).back * motion.speed;
   std::copy_n(glm::value_ptr(velocity), 3, info.velocity);
   info.acceleration = 2 * std::abs(motion.speed); // stops within half a second
   info.turnRate = glm::radians(motion.turn);
   info.latest = motion.latency / 1000;
-  info.eyeDistance = motion.eyes;
+  info.eyeDistance = eyes;
   uint32_t count = kMostCameras;
   GpgpCamera cameras[kMostCameras];
   const GpgpResult result = gpgpGetViewMotionCameras(&info, &count, cameras, &coverage);
@@ -65,7 +39,7 @@ MotionCell::MotionCell(const Motion& motion, const View& view, Size viewport) {
 
 View MotionCell::viewer(uint32_t k) const {
   const View middle{glm::make_mat4(info.camera.viewProjection), info.camera.reversedDepth != 0};
-  const Axes axes = axesOf(middle);
+  const visibility::CameraAxes axes(info.camera);
   const auto draw = [&](uint32_t number) { return shader::unitFloat(shader::childSeed(k + 1, number)); };
   const auto either = [&](uint32_t number) { return draw(number) < 0.5f ? -1.0f : 1.0f; };
   const bool extreme = k < 4;

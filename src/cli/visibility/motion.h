@@ -12,7 +12,7 @@ struct MotionCell {
   GpgpViewMotionCoverage coverage{};
   std::vector<View> views;
 
-  MotionCell(const Motion& motion, const View& view, Size viewport);
+  MotionCell(const Motion& motion, float eyes, const View& view, Size viewport);
   Size sizeOf(size_t view) const {
     return view ? Size{coverage.cornerWidth, coverage.cornerHeight} : Size{coverage.width, coverage.height};
   }

@@ -1,6 +1,7 @@
 #include "cli/visibility/options.h"
 #include "cli/shared/command.h"
 
+#include <cmath>
 #include <cstdio>
 #include <sstream>
 
@@ -16,6 +17,18 @@ void parseEpsilon(const std::string& text, VisibilityOptions& options) {
     throw CLI::ValidationError("--epsilon", "'" + text + "' is not ABS,DYN, two numbers from 0 on");
   options.epsilonStatic = values[0];
   options.epsilonDynamic = values[1];
+}
+
+Motion parseMotion(const std::string& text) {
+  Motion motion;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%f,%f,%f%c", &motion.speed, &motion.turn, &motion.latency, &rest) != 3 ||
+      !(std::abs(motion.speed) <= 1e6f) || !(motion.turn >= 0 && motion.turn <= 1080) ||
+      !(motion.latency >= 0 && motion.latency <= 10000))
+    throw CLI::ValidationError("--motion", "'" + text +
+                                               "' is not SPEED,TURN,LATENCY: world units per second along the "
+                                               "view, degrees per second up to 1080, milliseconds up to 10000");
+  return motion;
 }
 
 /// "N" or "WxH", multiples of 128 up to 8192.
@@ -122,7 +135,7 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
   CLI::Option* motion =
       command
           .add_option_function<std::string>(
-              "--motion", [&options](const std::string& text) { options.motion = Motion::parse(text); },
+              "--motion", [&options](const std::string& text) { options.motion = parseMotion(text); },
               "What a viewer may see who walks and turns meanwhile: world units per second along the view, degrees per "
               "second, and milliseconds until the result is no longer shown; gpgp chooses the view points. --reference "
               "compares with what viewers see at the picture's size")
@@ -191,7 +204,6 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
       ->needs(atlas);
   // What would have no effect is an error: who gives it expects one.
   command.callback([&options, conservative, samples, recheck] {
-    if (options.motion) options.motion->eyes = options.eyes;
     for (const CLI::Option* option : conservative)
       if (option->count() && options.method != "conservative")
         throw CLI::ValidationError(option->get_name(), "belongs to --method conservative");

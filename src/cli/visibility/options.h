@@ -2,13 +2,18 @@
 #pragma once
 #include "cli/shared/common.h"
 
-#include "cli/visibility/motion_options.h"
-
 #include <gpgp/visibility.h>
 
 #include <optional>
 
 namespace gpgp::cli {
+
+/// How the viewer of --motion moves.
+struct Motion {
+  float speed = 0;   ///< along the view, world units per second
+  float turn = 0;    ///< degrees per second
+  float latency = 0; ///< milliseconds until the result is no longer displayed
+};
 
 struct VisibilityOptions {
   std::string model, image, overlay, exportIds, camera, out, display, method = "standard", cell,

@@ -158,7 +158,7 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
   std::vector<std::optional<MotionCell>> motions(cameras);
   Size largest = options.size;
   for (uint32_t k = 0; k < cameras && options.motion; ++k) {
-    motions[k].emplace(*options.motion, viewOf(options, bounds, k), options.size);
+    motions[k].emplace(*options.motion, options.eyes, viewOf(options, bounds, k), options.size);
     const Size wide = motions[k]->sizeOf(0);
     largest = {std::max(largest.width, wide.width), std::max(largest.height, wide.height)};
   }

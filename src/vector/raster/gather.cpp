@@ -49,11 +49,9 @@ Result<uint32_t> Gather::bind(const core::Resident& asset) { // to a slot, if on
 /// Its index; kNone where it covers nothing or finds no room.
 uint32_t Gather::addSource(const Map& map, float opacity, uint32_t firstImage, const Chain& clip) {
   ItemRecord item{};
-  const Map moved =
-      compose({1, 0, 0, 1, double(region_.x - region_.box.left), double(region_.y - region_.box.top)}, map);
-  if (clip.hidden ||
-      !placeItem(moved, info_.width, info_.height, item, region_.x - region_.box.left, region_.y - region_.box.top))
-    return kNone;
+  const int x = region_.x - region_.box.left, y = region_.y - region_.box.top; // from the canvas to the region
+  const Map moved = compose({1, 0, 0, 1, double(x), double(y)}, map);
+  if (clip.hidden || !placeItem(moved, info_.width, info_.height, item, x, y)) return kNone;
   shader::vec4 scissor = clip.scissor;
   if (planner_ && planner_->composites()) { // other regions lie beside this one
     const PixelBox& box = region_.box;
@@ -67,7 +65,6 @@ uint32_t Gather::addSource(const Map& map, float opacity, uint32_t firstImage, c
   item.color.w = opacity;
   item.firstImage = firstImage;
   const auto side = [](float v, int by) { return std::abs(v) < shader::kUnbounded ? v + static_cast<float>(by) : v; };
-  const int x = region_.x - region_.box.left, y = region_.y - region_.box.top;
   item.scissor = {side(scissor.x, x), side(scissor.y, y), side(scissor.z, x), side(scissor.w, y)};
   item.clip = clip.chain;
   item.layer = clip.layer;
@@ -128,18 +125,18 @@ Result<void> Gather::planDrawing(const DrawingAsset& drawing, const Map& map, fl
   return {};
 }
 
-/// The region of the next thing without layers: behind a drawing with layers it is another one.
-void Gather::lookAtPlain() {
-  if (!planner_) return;
+/// The region of the next thing without layers; true where the planner gave it one of its own, as it does behind a
+/// drawing with layers.
+bool Gather::lookAtPlain() {
   const auto runs = planner_->runs();
-  region_ = nextRun_ < runs.size() && runs[nextRun_].unit == unit_ ? runs[nextRun_].region : base_;
+  const bool own = nextRun_ < runs.size() && runs[nextRun_].unit == unit_;
+  region_ = own ? runs[nextRun_].region : base_;
+  return own;
 }
 
 void Gather::beginPlain() {
   if (!planner_) return;
-  lookAtPlain();
-  const auto runs = planner_->runs();
-  if (nextRun_ < runs.size() && runs[nextRun_].unit == unit_) ++nextRun_;
+  if (lookAtPlain()) ++nextRun_;
   base_ = region_;
   full_ = full_ || unit_ >= planner_->units();
   ++unit_;
@@ -335,7 +332,7 @@ Result<void> Gather::addList(const List& list, const GpgpCanvasItem& item, const
     return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".list needs %u images from images[%u] on; imageCount is %u",
                  list.images(), item.firstImage, info_.imageCount);
   const Map map = toMap(item.transform, item.perspective);
-  lookAtPlain(); // clips lie where what they cut lies
+  if (planner_) lookAtPlain(); // clips lie where what they cut lies
   if (auto ok = resolveClips(list, map, own); !ok) return ok;
   resolveGroups(list, item.opacity);
   // Shapes and texts that follow each other in the same space share a source.

@@ -83,7 +83,7 @@ private:
   core::Result<void> planDrawing(const DrawingAsset& drawing, const Map& map, float opacity, const Chain& own);
   void addRun(const DrawingAsset& drawing, uint32_t run, uint32_t source, uint32_t slot);
   core::Result<void> addLayered(const DrawingAsset& drawing, uint32_t firstImage);
-  void lookAtPlain();
+  bool lookAtPlain();
   void beginPlain();
   Chain ownOf(const GpgpCanvasItem& item) const;
   struct Block;
