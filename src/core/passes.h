@@ -4,7 +4,7 @@
 // the recorded commands, debug labels, timestamps, and the pass tables of the documentation. Nothing about a recording
 // is decided again while recording.
 #pragma once
-#include "core/result.h"
+#include "core/shader_code.h"
 
 #include <array>
 #include <memory_resource>
@@ -53,7 +53,7 @@ struct Use {
 constexpr uint32_t kMaxSpecialization = 10;
 struct ShaderDesc {
   const char* name;
-  std::span<const uint32_t> spirv;
+  ShaderCode spirv;
   std::array<uint32_t, kMaxSpecialization> specialization = {}; ///< by constant_id
   uint32_t specializationCount = 0;
 };

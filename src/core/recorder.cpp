@@ -175,9 +175,11 @@ Result<void> Recorder::init(PassList passes, std::span<const DrawShaders> draws)
 // ---------------------------------------------------------------- pipelines
 
 Result<VkShaderModule> Recorder::createModule(const ShaderDesc& shader) const {
+  const auto code = ShaderWords::of(shader.spirv, &context.host());
+  if (!code) return code.error();
   VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
-  info.codeSize = shader.spirv.size_bytes();
-  info.pCode = shader.spirv.data();
+  info.codeSize = code->words().size_bytes();
+  info.pCode = code->words().data();
   VkShaderModule module = VK_NULL_HANDLE;
   const VkResult result = context.device.vk.CreateShaderModule(context.device.device, &info, nullptr, &module);
   if (result != VK_SUCCESS) return vulkanError(result, "vkCreateShaderModule");

@@ -1,9 +1,9 @@
 # The shaders of the vector service: one table from which the build rules are made, what "shaders/vector_shaders.h"
-# declares, and the one source that holds the SPIR-V.
+# declares, and the one source that defines it.
 #
 #   gpgp_vector_shader(NAME FILE [SUBGROUPS] [DRAWINGS] [OPERATIONS] [TARGETS] DEFINES A=1 ...)
 #
-# Each axis multiplies the shader. In C++ vector_NAME is the SPIR-V, or an array of it by axis, in this order:
+# Each axis multiplies the shader. In C++ vector_NAME is the module, or an array of them by axis, in this order:
 #
 #   SUBGROUPS   [0] for any device, [1] for devices with subgroup arithmetic             SUBGROUPS=0|1
 #   DRAWINGS    [0] one drawing, [1] several drawings, [2] projective items              ONE_DRAWING=1|0, PROJECTIVE=1
@@ -50,8 +50,8 @@ function(gpgp_vector_shader name file)
     list(APPEND values ${own})
   endforeach()
   set(vector_includes "${includes}" PARENT_SCOPE)
-  set(spirv "std::span<const uint32_t>")
-  list(TRANSFORM values PREPEND spirv::)
+  set(spirv "core::ShaderCode")
+  list(TRANSFORM values PREPEND "::")
   list(LENGTH type depth)
   if(depth EQUAL 2) # braces around each inner array
     list(GET type 1 inner)
@@ -163,9 +163,9 @@ set(generated ${PROJECT_BINARY_DIR}/generated/shaders)
 file(CONFIGURE OUTPUT ${generated}/vector_shaders.h CONTENT [[
 // By src/vector/shaders.cmake.
 #pragma once
+#include "core/shader_code.h"
+
 #include <array>
-#include <cstdint>
-#include <span>
 
 namespace gpgp::vector {
 @vector_declarations@} // namespace gpgp::vector
@@ -174,10 +174,8 @@ file(CONFIGURE OUTPUT ${generated}/vector_shaders.cpp CONTENT [[
 // By src/vector/shaders.cmake.
 #include "shaders/vector_shaders.h"
 
+@vector_includes@
 namespace gpgp::vector {
-namespace spirv {
-@vector_includes@} // namespace spirv
-
 @vector_definitions@} // namespace gpgp::vector
 ]] @ONLY)
 target_sources(gpgp_vector_objects PRIVATE ${generated}/vector_shaders.cpp)

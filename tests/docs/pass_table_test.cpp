@@ -38,8 +38,10 @@ private:
     std::string name, file; // name: file and defines
   };
   const Shader& at(const core::ShaderDesc& shader) const {
-    const auto* bytes = reinterpret_cast<const uint8_t*>(shader.spirv.data());
-    const auto found = files_.find({bytes, bytes + shader.spirv.size_bytes()});
+    const auto code = core::ShaderWords::of(shader.spirv, std::pmr::get_default_resource());
+    if (!code) throw std::runtime_error(code.error().text);
+    const auto* bytes = reinterpret_cast<const uint8_t*>(code->words().data());
+    const auto found = files_.find({bytes, bytes + code->words().size_bytes()});
     if (found == files_.end()) throw std::runtime_error(std::string("no source for the shader of ") + shader.name);
     return found->second;
   }

@@ -5,11 +5,11 @@
 #include "visibility/sampling/budgets.h"
 #include "visibility/shared/cluster.h"
 
-#include "shaders/visibility_chunks.spv.h"
-#include "shaders/visibility_finish.spv.h"
-#include "shaders/visibility_large.spv.h"
-#include "shaders/visibility_plan.spv.h"
-#include "shaders/visibility_small.spv.h"
+#include "shaders/named_chunks.spv.h"
+#include "shaders/named_finish.spv.h"
+#include "shaders/named_large.spv.h"
+#include "shaders/named_plan.spv.h"
+#include "shaders/named_small.spv.h"
 
 #include <cstddef>
 #include <cstring>
@@ -44,7 +44,7 @@ std::map<std::string, size_t> offsetsOf(std::span<const uint32_t> module, const 
   EXPECT_EQ(offsets.at(#member), offsetof(shader::Struct, member)) << #member
 
 TEST(Layout, ParamsAgree) {
-  for (const auto& offsets : {offsetsOf(visibility_small, "Params"), offsetsOf(visibility_finish, "Params")}) {
+  for (const auto& offsets : {offsetsOf(named_small, "Params"), offsetsOf(named_finish, "Params")}) {
     EXPECT_EQ(offsets.size(), 56u);
     EXPECT_OFFSET(offsets, Params, viewProjection);
     EXPECT_OFFSET(offsets, Params, width);
@@ -70,7 +70,7 @@ TEST(Layout, ParamsAgree) {
 }
 
 TEST(Layout, CountersAgree) {
-  for (const auto& offsets : {offsetsOf(visibility_large, "Counters"), offsetsOf(visibility_finish, "Counters")}) {
+  for (const auto& offsets : {offsetsOf(named_large, "Counters"), offsetsOf(named_finish, "Counters")}) {
     EXPECT_EQ(offsets.size(), 54u);
     EXPECT_OFFSET(offsets, Counters, triangles);
     EXPECT_OFFSET(offsets, Counters, skippedDraws);
@@ -93,16 +93,16 @@ TEST(Layout, CountersAgree) {
 }
 
 TEST(Layout, TheEnginesStructsAreTheShaders) {
-  const auto draw = offsetsOf(visibility_small, "Draw");
+  const auto draw = offsetsOf(named_small, "Draw");
   EXPECT_EQ(draw.at("transform"), offsetof(GpgpVisibilityDraw, transform));
   EXPECT_EQ(draw.at("mesh"), offsetof(GpgpVisibilityDraw, mesh));
   EXPECT_EQ(draw.at("firstTriangle"), offsetof(GpgpVisibilityDraw, firstTriangle));
   EXPECT_EQ(draw.at("flags"), offsetof(GpgpVisibilityDraw, flags));
   EXPECT_EQ(draw.at("origin"), offsetof(GpgpVisibilityDraw, origin));
-  const auto mesh = offsetsOf(visibility_plan, "Mesh");
+  const auto mesh = offsetsOf(named_plan, "Mesh");
   EXPECT_EQ(mesh.at("firstIndex"), offsetof(GpgpMesh, firstIndex));
   EXPECT_EQ(mesh.at("indexCount"), offsetof(GpgpMesh, indexCount));
-  const auto cluster = offsetsOf(visibility_chunks, "Cluster");
+  const auto cluster = offsetsOf(named_chunks, "Cluster");
   EXPECT_EQ(cluster.at("axis"), offsetof(shader::Cluster, axis));
   EXPECT_EQ(cluster.at("whole"), offsetof(shader::Cluster, whole));
   EXPECT_EQ(mesh.at("vertexOffset"), offsetof(GpgpMesh, vertexOffset));

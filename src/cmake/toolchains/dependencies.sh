@@ -4,8 +4,8 @@
 #
 #   dependencies.sh [PART...]    base (the default), compiler, text, all
 #
-#   base      what libgpgp, the command without compilers and the tests need: headers, zlib, libpng, tinygltf,
-#             GoogleTest, an import library of the Vulkan loader
+#   base      what libgpgp, the command without compilers and the tests need: headers, zstd, zlib, libpng,
+#             tinygltf, GoogleTest, an import library of the Vulkan loader
 #   compiler  libgpgp_compiler: pugixml, SPIRV-Tools, glslang. Not built to its end yet: expect to mend it.
 #   text      libgpgp_text: FreeType, HarfBuzz, FriBidi, ICU
 #
@@ -123,6 +123,8 @@ spirvTools() {
 base() {
   once headers headers
   once vulkan-loader vulkanLoader
+  unpacked libzstd
+  once zstd cmakeInstall zstd "$work/libzstd/build/cmake" -DZSTD_BUILD_PROGRAMS=OFF -DZSTD_BUILD_SHARED=OFF
   unpacked zlib
   once zlib plain zlib "$work/zlib"
   unpacked libpng1.6

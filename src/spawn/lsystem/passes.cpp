@@ -55,7 +55,7 @@ public:
   }
 
 private:
-  uint32_t shader(const char* name, std::span<const uint32_t> spirv) { return list.add(core::ShaderDesc{name, spirv}); }
+  uint32_t shader(const char* name, const core::ShaderCode& spirv) { return list.add(core::ShaderDesc{name, spirv}); }
 
   /// All shaders read the table, the constants and the counters, and may count.
   core::Pass& direct(const char* name, uint32_t shader, uint32_t groups, std::initializer_list<core::Use> uses,

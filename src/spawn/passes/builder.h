@@ -24,7 +24,7 @@ struct SpawnerSizes {
   uint32_t cells() const;
 };
 
-using Spirv = std::span<const uint32_t>;
+using Spirv = core::ShaderCode;
 
 class PassBuilder {
 public:

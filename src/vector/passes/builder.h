@@ -7,7 +7,7 @@
 
 namespace gpgp::vector {
 
-using Spirv = std::span<const uint32_t>;
+using Spirv = core::ShaderCode;
 /// By drawings: one, several, projective items (shaders.cmake).
 using Forms = std::array<Spirv, 3>;
 using FormNames = std::array<const char*, 3>;

@@ -54,7 +54,7 @@ core::PassList describeAtlasPasses(const AtlasBudgets& budgets, std::pmr::memory
   using enum core::UseKind;
   core::PassList list(memory);
   addResources(list, budgets);
-  const auto add = [&](const char* name, std::span<const uint32_t> spirv) {
+  const auto add = [&](const char* name, const core::ShaderCode& spirv) {
     return list.add(core::ShaderDesc{name, spirv});
   };
   list.fill("clear pairs", kAtlasCodes, 0).condition = kIfPairs;

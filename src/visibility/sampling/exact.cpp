@@ -20,7 +20,7 @@ void addExact(core::PassList& list, const core::Device& device) {
   using namespace shader;
   using enum core::UseKind;
   const uint32_t software = device.software ? 1 : 0;
-  const auto addResolve = [&](const char* name, std::span<const uint32_t> spirv, size_t arguments) -> core::Pass& {
+  const auto addResolve = [&](const char* name, const core::ShaderCode& spirv, size_t arguments) -> core::Pass& {
     return list.dispatchIndirect(name, addShader(list, name, spirv, {software}),
                                  {{kBindParams, read},
                                   {kBindSlots, readWrite},
@@ -74,7 +74,7 @@ void addExact(core::PassList& list, const core::Device& device) {
                  {kBindOpen, write}},
                 kTileGroups);
   const bool subgroups = device.subgroupArithmetic && device.subgroupSize == kBatch;
-  const auto choose = [&](std::span<const uint32_t> bySubgroups, std::span<const uint32_t> others) {
+  const auto choose = [&](const core::ShaderCode& bySubgroups, const core::ShaderCode& others) {
     return subgroups ? bySubgroups : others;
   };
   // Lists do not ask each other. The long ones first: what takes longest is not what is waited for at the end.

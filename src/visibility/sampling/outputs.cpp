@@ -16,7 +16,7 @@ void addOutputs(core::PassList& list) {
   using namespace shader;
   using enum core::UseKind;
   // Goes once over all triangles of the draws.
-  const auto addSweep = [&](const char* name, std::span<const uint32_t> spirv, std::initializer_list<core::Use> uses,
+  const auto addSweep = [&](const char* name, const core::ShaderCode& spirv, std::initializer_list<core::Use> uses,
                             uint32_t condition) {
     fetchesTriangles(
         list.dispatchIndirect(name, addShader(list, name, spirv), uses, kBindCounters, offsetof(Counters, smallArgs)))

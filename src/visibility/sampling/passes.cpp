@@ -54,7 +54,7 @@ void addResources(core::PassList& list, const Budgets& budgets) {
 }
 } // namespace
 
-uint32_t addShader(core::PassList& list, const char* name, std::span<const uint32_t> spirv,
+uint32_t addShader(core::PassList& list, const char* name, const core::ShaderCode& spirv,
                    std::initializer_list<uint32_t> constants) {
   core::ShaderDesc desc{name, spirv};
   std::copy(constants.begin(), constants.end(), desc.specialization.begin());

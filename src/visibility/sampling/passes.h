@@ -41,7 +41,7 @@ void addOutputs(core::PassList& list); ///< what follows the bits: lists, comman
 void addMetrics(core::PassList& list); ///< recordings that measure have these passes only
 
 /// constants: specialisation, from 0 on.
-uint32_t addShader(core::PassList& list, const char* name, std::span<const uint32_t> spirv,
+uint32_t addShader(core::PassList& list, const char* name, const core::ShaderCode& spirv,
                    std::initializer_list<uint32_t> constants = {});
 /// Adds to a pass' uses those of a shader that makes triangles from the draws' items.
 core::Pass& fetchesTriangles(core::Pass& pass);

@@ -28,7 +28,7 @@ void addStandard(core::PassList& list, const Budgets& budgets, const core::Devic
   using namespace shader;
   using enum core::UseKind;
   const bool single = device.has(GPGP_FEATURE_BUFFER_INT64_ATOMICS);
-  const auto choose = [&](std::span<const uint32_t> whole, std::span<const uint32_t> others) {
+  const auto choose = [&](const core::ShaderCode& whole, const core::ShaderCode& others) {
     return single ? whole : others;
   };
   list.dispatch("clear", addShader(list, "clear", visibility_clear),
