@@ -459,8 +459,10 @@ typedef struct GpgpCanvasCreateInfo {
   uint32_t maxTileWords;
   /** Items of all kinds in one recording, not drawings alone; at most 65536; 0: 64. Lists (ui.h) count each of their
    *  drawings and clips, and each change of transform, clip or group. A drawing with layers counts each of its layers,
-   *  clips of layers, and the paths between them. The number of groups has the same limit. All
-   *  items together may show at most 8 different drawings and glyph sets. */
+   *  clips of layers, and the paths between them. The number of groups has the same limit, and so
+   *  has the number of different drawings and glyph sets, of which there are at most 2047. Assets share buffers, of
+   *  which a recording binds at most 8: this counts only where its assets together take more than
+   *  VkPhysicalDeviceLimits::maxStorageBufferRange. */
   uint32_t maxDrawings;
   /** Glyphs of all texts in one recording, blanks not counted, at most 1048576; 0: 1024. 160 bytes each, and 48 more
    *  for every recording that can be in flight. */
@@ -729,7 +731,7 @@ typedef struct GpgpPatchDrawInfo {
   const void* pNext;
   const GpgpTargetInfo* target; /**< equal to one of those that were passed to gpgpPrewarm */
   const GpgpPatchItem* items;   /**< in painting order, the first at the bottom */
-  uint32_t itemCount;           /**< at most maxItems; all items show at most 8 different drawings and glyph sets */
+  uint32_t itemCount;           /**< at most maxItems, of any number of drawings and glyph sets */
   /** The viewport that the engine has set: x, y, width, height, in pixels. A negative height turns y over. */
   float viewport[4];
   /** VK_TRUE: colours are written as sRGB encodes them, premultiplied, and so mix in that encoding. For attachments in

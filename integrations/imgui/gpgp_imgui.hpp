@@ -37,7 +37,7 @@ struct RendererInfo {
   uint32_t maxWidth = 1920, maxHeight = 1080; ///< of the framebuffer, pixels: as large as the window may become
   uint32_t maxLayers = 4;                     ///< how often text and widgets may lie over each other
   uint32_t maxGlyphs = 8192;                  ///< of one frame
-  uint32_t maxDrawings = 64;                  ///< widgets of one frame; at most 7 different drawings
+  uint32_t maxDrawings = 64;                  ///< widgets of one frame
   uint32_t glyphSetGlyphs = 0;                ///< kept, of all fonts (GpgpGlyphSetCreateInfo::maxGlyphs)
   VkDeviceSize glyphSetBytes = 0;
   uint32_t maxPictures = 64; ///< kept: glyphs that are pictures, as bitmap emoji are; 136 KB each once there is one

@@ -104,6 +104,7 @@ Result<void> Context::initialise(const GpgpContextCreateInfo& info) {
   if (device.software) device.subgroupSize = subgroups.subgroupSize; // theirs is a vector's
 
   gpu_ = makeUnique<GpuMemory>(host_, device, host_, info.gpuAllocator);
+  assetPool_ = makeUnique<AssetPool>(host_, device, *gpu_, host_);
   if (info.pipelineCache) {
     pipelineCache = info.pipelineCache;
   } else {
@@ -125,6 +126,7 @@ Context::~Context() {
   freeRetired(UINT64_MAX);
   uploads_.reset();
   if (ownsPipelineCache_) device.vk.DestroyPipelineCache(device.device, pipelineCache, nullptr);
+  assetPool_.reset();
   gpu_.reset();
   for (void* block : slotBlocks_) host_.deallocate(block, sizeof(Slot) * 64, alignof(Slot));
 }

@@ -4,6 +4,7 @@
 // "objects" while the mutex of that name is held. The rest is immutable after creation, or safe for all threads: assets
 // are created on any.
 #pragma once
+#include "core/asset_pool.h"
 #include "core/device.h"
 #include "core/gpu_memory.h"
 #include "core/object.h"
@@ -40,6 +41,7 @@ public:
 
   HostMemory& host() { return host_; }
   GpuMemory& gpu() { return *gpu_; }
+  AssetPool& assetPool() { return *assetPool_; }
   void message(GpgpSeverity severity, GpgpResult code, const char* function, const char* objectLabel,
                const char* text) const;
 
@@ -85,6 +87,7 @@ private:
 
   HostMemory host_;
   Unique<GpuMemory> gpu_;
+  Unique<AssetPool> assetPool_;
   Unique<UploadRing> uploads_;
   std::pmr::vector<void*> slotBlocks_; // objects, as the next two
   Slot* freeSlots_ = nullptr;

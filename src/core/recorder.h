@@ -41,8 +41,8 @@ struct Record {
   std::array<Binding, kMaxResources> bindings = {};
   std::array<std::array<uint32_t, 3>, kMaxGroupCounts> groups = {};
   std::array<bool, kMaxConditions> conditions = {};
-  uint32_t levels = UINT32_MAX;                             ///< passes of this level and above are left out
-  std::array<std::span<const std::byte>, 9> constants = {}; ///< for the first constants resource, in a row
+  uint32_t levels = UINT32_MAX;                              ///< passes of this level and above are left out
+  std::array<std::span<const std::byte>, 10> constants = {}; ///< for the first constants resource, in a row
   uint32_t replacedShader = UINT32_MAX; ///< passes with this shader run another pipeline of the same layout
   VkPipeline replacement = VK_NULL_HANDLE;
   std::span<const Step> steps; ///< in order, each behind a barrier; recorded where the first stepped pass lies

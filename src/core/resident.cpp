@@ -9,8 +9,13 @@ constexpr VkDeviceSize kAlignment = 16; // of pieces and sizes: covers every cop
 } // namespace
 
 Resident::~Resident() {
-  const std::lock_guard lock(context.objects);
-  unlink();
+  {
+    const std::lock_guard lock(context.objects);
+    unlink();
+  }
+  if (!place_.buffer) return;
+  context.assetPool().free(place_);
+  if (pending_) context.gpu().count(service_, &GpgpServiceMemory::pendingBytes, -size_);
 }
 
 void Resident::attach() {
@@ -37,10 +42,20 @@ void Resident::retire() {
   const std::lock_guard lock(context.objects);
   unlink();
   buffer_.markPending();
+  if (!place_.buffer || pending_) return;
+  context.gpu().count(service_, &GpgpServiceMemory::pendingBytes, size_);
+  pending_ = true;
 }
 
-Result<void> Resident::allocate(GpgpService service, VkDeviceSize size) {
+Result<void> Resident::allocate(GpgpService service, VkDeviceSize size, Room room) {
   size_ = (std::max<VkDeviceSize>(size, 1) + kAlignment - 1) / kAlignment * kAlignment;
+  service_ = service;
+  if (room == Room::shared) {
+    const auto place = context.assetPool().allocate(service, size_);
+    if (!place) return place.error();
+    place_ = *place;
+    return {};
+  }
   auto buffer =
       Buffer::create(context.device, context.gpu(), service, label.text, size_,
                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryPlace::device);
@@ -49,16 +64,17 @@ Result<void> Resident::allocate(GpgpService service, VkDeviceSize size) {
   return {};
 }
 
-Result<void> Resident::makeResident(GpgpService service, std::pmr::vector<std::byte> bytes, VkDeviceSize clearSize) {
-  if (auto ok = allocate(service, bytes.empty() ? clearSize : bytes.size()); !ok) return ok;
+Result<void> Resident::makeResident(GpgpService service, std::pmr::vector<std::byte> bytes, VkDeviceSize clearSize,
+                                    Room room) {
+  if (auto ok = allocate(service, bytes.empty() ? clearSize : bytes.size(), room); !ok) return ok;
   if (!bytes.empty()) bytes.resize(size_);
   bytes_ = std::move(bytes);
   queue(0, size_);
   return {};
 }
 
-Result<void> Resident::makeGrowing(GpgpService service, VkDeviceSize size) {
-  if (auto ok = allocate(service, size); !ok) return ok;
+Result<void> Resident::makeGrowing(GpgpService service, VkDeviceSize size, Room room) {
+  if (auto ok = allocate(service, size, room); !ok) return ok;
   bytes_.resize(size_);
   grows_ = true;
   return {};
@@ -124,7 +140,7 @@ Result<VkDeviceSize> UploadRing::record(VkCommandBuffer commandBuffer, VkDeviceS
       const VkDeviceSize before = range.done;
       if (before == range.size) continue;
       if (r->bytes_.empty()) { // a clear costs no ring
-        vk.CmdFillBuffer(commandBuffer, r->buffer_.handle(), range.offset, range.size, 0);
+        vk.CmdFillBuffer(commandBuffer, r->buffer(), r->offset() + range.offset, range.size, 0);
         range.done = range.size;
       }
       while (range.done < range.size && budget >= kAlignment) {
@@ -133,8 +149,8 @@ Result<VkDeviceSize> UploadRing::record(VkCommandBuffer commandBuffer, VkDeviceS
         piece = piece / kAlignment * kAlignment;
         if (piece == 0) break;
         std::memcpy(ring_.mapped() + at, r->bytes_.data() + to, piece);
-        const VkBufferCopy region{at, to, piece};
-        vk.CmdCopyBuffer(commandBuffer, ring_.handle(), r->buffer_.handle(), 1, &region);
+        const VkBufferCopy region{at, r->offset() + to, piece};
+        vk.CmdCopyBuffer(commandBuffer, ring_.handle(), r->buffer(), 1, &region);
         head_ += piece, range.done += piece, budget -= piece;
       }
       full = range.done == before; // the ring, or the budget: keep the order

@@ -1,4 +1,5 @@
-// Assets and histories: objects with one device buffer whose contents arrive through gpgpRecordUpload.
+// Assets and histories: objects with one device buffer, or a part of one that they share, whose contents arrive through
+// gpgpRecordUpload.
 //
 // An asset's buffer receives bytes, a history's is cleared to zero. An object is resident from the recording that
 // copied its last byte on; if that command buffer turns out never to have run, it is pending again. What is added later
@@ -18,18 +19,22 @@ public:
   void retire() override;
 
   bool resident() const { return hasArrived(queued_.load(std::memory_order_acquire)); }
-  VkBuffer buffer() const { return buffer_.handle(); }
+  VkBuffer buffer() const { return buffer_ ? buffer_.handle() : place_.buffer; }
+  VkDeviceSize bufferSize() const { return buffer_ ? buffer_.size() : place_.bufferSize; }
+  VkDeviceSize offset() const { return place_.offset; } ///< in the buffer
   VkDeviceSize size() const { return size_; }
 
 protected:
   /// Bytes to copy; the object keeps them until the copy is known to have run.
   Resident(Context& owner, Kind objectKind, const char* name)
       : Object(owner, objectKind, name), bytes_(&owner.host()), ranges_(&owner.host()) {}
+  enum class Room { own, shared }; ///< a buffer of its own, or one of the context's pool
   /// Allocates the buffer. Either bytes (an asset), or an empty vector and a size to clear (a history). Sizes are
   /// rounded up to 16 bytes. Call once, at the end of the derived object's creation.
-  Result<void> makeResident(GpgpService service, std::pmr::vector<std::byte> bytes, VkDeviceSize clearSize = 0);
+  Result<void> makeResident(GpgpService service, std::pmr::vector<std::byte> bytes, VkDeviceSize clearSize = 0,
+                            Room room = Room::own);
   /// The same for contents that come in ranges: all bytes stay on the host, and nothing is queued.
-  Result<void> makeGrowing(GpgpService service, VkDeviceSize size);
+  Result<void> makeGrowing(GpgpService service, VkDeviceSize size, Room room);
   /// The bytes of one that grows. A range may change once no upload of it is under way (hasSettled).
   std::span<std::byte> bytes() { return bytes_; }
   std::span<const std::byte> bytes() const { return bytes_; }
@@ -51,11 +56,14 @@ private:
     uint64_t first, last; // numbers of the upload recordings that hold its pieces; 0: none
     bool settled;
   };
-  Result<void> allocate(GpgpService service, VkDeviceSize size);
+  Result<void> allocate(GpgpService service, VkDeviceSize size, Room room);
   VkDeviceSize pending() const;
   void updateArrived();
 
-  Buffer buffer_;
+  Buffer buffer_;          // its own, or
+  AssetPool::Place place_; // its part of another
+  GpgpService service_ = GPGP_SERVICE_CORE;
+  bool pending_ = false; // its part counts as waiting for frames to be safe
   std::pmr::vector<std::byte> bytes_;
   VkDeviceSize size_ = 0;
   bool grows_ = false;

@@ -496,6 +496,81 @@ TEST_F(CanvasTest, ThousandsOfInstancesOfOneDrawingInOneRecord) {
     }
 }
 
+// 300 drawings, each with paint and a group that fades, against one drawing that has all of it.
+TEST_F(CanvasTest, ARecordingShowsAnyNumberOfDrawings) {
+  constexpr uint32_t kDrawings = 300, kSize = 128;
+  GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
+  info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
+  info.maxWidth = info.maxHeight = kSize;
+  info.maxDrawings = 300;
+  info.targets = canvasTargets;
+  canvas = recorder(gpgpCreateCanvas, info);
+  std::mt19937 random(5);
+  const auto unit = [&] { return static_cast<float>(random() % 256) / 255; };
+  std::vector<TestPath> shapes;
+  std::vector<std::array<GpgpGradientStop, 3>> stops(kDrawings);
+  std::vector<GpgpGradient> gradients(kDrawings);
+  std::vector<GpgpPath> all;
+  std::vector<GpgpPathGroup> groups;
+  std::vector<GpgpAsset> drawings;
+  shapes.reserve(2 * kDrawings);
+  for (uint32_t i = 0; i < kDrawings; ++i) {
+    for (int k = 0; k < 2; ++k) {
+      TestPath& shape = shapes.emplace_back(randomShape(2 * i + k, 40));
+      const float x = static_cast<float>(random() % 88), y = static_cast<float>(random() % 88);
+      for (size_t p = 0; p < shape.points.size(); ++p) shape.points[p] += p % 2 ? y : x;
+      shape.color = {unit(), unit(), unit(), 0.5f + unit() / 2};
+    }
+    for (int k = 0; k < 3; ++k) stops[i][k] = {float(k) / 2, {unit(), unit(), unit(), 1}};
+    gradients[i].transform[0] = gradients[i].transform[3] = 1;
+    gradients[i].end[0] = gradients[i].end[1] = kSize;
+    gradients[i].stops = stops[i].data();
+    gradients[i].stopCount = 3;
+    GpgpPath painted = shapes[2 * i].view(), faded = shapes[2 * i + 1].view();
+    painted.gradient = &gradients[i];
+    faded.group = 1;
+    const GpgpPathGroup group{0, 0.25f + unit() / 2, nullptr, 0};
+    drawings.push_back(makeDrawing({painted, faded}, {group}));
+    groups.push_back(group);
+    faded.group = static_cast<uint32_t>(groups.size());
+    all.push_back(painted);
+    all.push_back(faded);
+  }
+  std::vector<GpgpCanvasItem> items;
+  for (const GpgpAsset drawing : drawings) items.push_back(place(drawing));
+  const auto got = raster(items, kSize, kSize, 16);
+  const auto want = raster({place(makeDrawing(all, groups)), place(drawings[0], 1, 1000)}, kSize, kSize, 16);
+  for (size_t i = 0; i < got.size(); ++i) {
+    ASSERT_EQ(got[i].r, want[i].r) << i;
+    ASSERT_EQ(got[i].g, want[i].g) << i;
+    ASSERT_EQ(got[i].b, want[i].b) << i;
+    ASSERT_EQ(got[i].a, want[i].a) << i;
+  }
+  // As many as items have room, and not one more.
+  std::vector<GpgpCanvasItem> more = items;
+  TestPath square;
+  square.move(0, 0).line(4, 0).line(4, 4).line(0, 4).close();
+  GpgpListCreateInfo listInfo = GPGP_LIST_CREATE_INFO_INIT;
+  GpgpList list = nullptr;
+  ASSERT_EQ(gpgpCreateList(context, &listInfo, &list), GPGP_SUCCESS);
+  for (uint32_t i = 0; i < 2; ++i) ASSERT_EQ(gpgpAddDrawing(list, makeDrawing({square.view()}), 0, 0), GPGP_SUCCESS);
+  more.back() = {nullptr, {1, 0, 0, 1, 0, 0}, 1};
+  more.back().list = list;
+  const GpgpHistory history = makeView(kSize, kSize);
+  const auto frame = advance();
+  device.submitAndWait([&](VkCommandBuffer commands) {
+    ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
+    GpgpCanvasInfo canvasInfo = GPGP_CANVAS_INFO_INIT;
+    canvasInfo.width = canvasInfo.height = kSize;
+    canvasInfo.items = more.data();
+    canvasInfo.itemCount = static_cast<uint32_t>(more.size());
+    canvasInfo.history = history;
+    EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &canvasInfo), GPGP_ERROR_UNSUPPORTED);
+  });
+  EXPECT_NE(lastMessage().find("at most 300 different drawings"), std::string::npos) << lastMessage();
+  gpgpDestroyList(list);
+}
+
 TEST_F(CanvasTest, GradientsFollowTheirSpreadsAndCircles) {
   makeCanvas(64);
   TestPath square;

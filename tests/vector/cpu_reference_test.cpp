@@ -375,9 +375,10 @@ struct CpuTest : CanvasTest {
     add(given.itemTables.layers, gather.layers);
     vector::CpuInput& input = given.input;
     input.header = header;
-    std::copy_n(gather.slots, shader::kSlots, input.slots.begin());
-    for (uint32_t slot = 0; slot < gather.slotCount; ++slot) input.tables[slot] = tables.at(gather.bound[slot]);
-    input.tables[shader::kShapeSlot] = given.shapes;
+    input.assets.push_back({given.itemTables.slots[0], given.shapes});
+    for (const core::Resident* asset : gather.assets())
+      input.assets.push_back(
+          {given.itemTables.slots[input.assets.size()], tables.at(asset), asset->offset() / sizeof(vec4)});
     input.placements = std::span(given.placements).first(gather.placements());
     input.sources = std::span(given.itemTables.sources).first(gather.sources);
     input.images = cpuImages;

@@ -172,6 +172,27 @@ struct InPassTest : CanvasTest {
   }
 };
 
+TEST_F(InPassTest, ADrawShowsAnyNumberOfDrawings) {
+  std::vector<TestPath> shapes;
+  std::vector<GpgpPath> all;
+  std::vector<GpgpCanvasItem> items;
+  for (uint32_t i = 0; i < 100; ++i) {
+    TestPath& shape = shapes.emplace_back(randomShape(i, 20));
+    for (size_t p = 0; p < shape.points.size(); ++p) shape.points[p] += float((p % 2 ? i / 10 : i % 10) * 24);
+    shape.color = {float(i % 3) / 2, float(i % 5) / 4, 1, 1};
+    items.push_back(place(makePatchDrawing({shape.view()})));
+  }
+  for (const TestPath& shape : shapes) all.push_back(shape.view());
+  const auto got = draw(items, 240, 240, 1), want = draw({place(makePatchDrawing(all))}, 240, 240, 1);
+  double worst = 0, ink = 0;
+  for (size_t i = 0; i < got.size(); ++i) {
+    worst = std::max({worst, double(std::abs(got[i].r - want[i].r)), double(std::abs(got[i].a - want[i].a))});
+    ink += double(got[i].a);
+  }
+  EXPECT_LE(worst, 1.0 / 1024);
+  EXPECT_GT(ink, 1000);
+}
+
 /// The area of a path in each pixel, by 64 rows of exact spans; pixels: scale * drawing + shift.
 std::vector<double> areas(const GpgpPath& path, double scale, double x, double y, uint32_t size) {
   constexpr int kRows = 64;

@@ -162,8 +162,10 @@ TEST_F(LayersCpuTest, EveryPictureIsTheReferences) {
     const auto packed = vector::packDrawing(*converted, vector::makeOutlines(*converted, memory), memory);
     std::vector<vec4> table(packed.bytes.size() / sizeof(vec4));
     std::memcpy(table.data(), packed.bytes.data(), packed.bytes.size());
-    const std::span<const vec4> slots[] = {table};
-    vector::operateOnCpu(listed, want, slots);
+    const core::Context* owner = nullptr;
+    const auto& asset = static_cast<const vector::DrawingAsset&>(*api::objectOf(drawing, &owner));
+    const vector::AssetTable assets[] = {{}, {asset.tables(), table, asset.offset() / sizeof(vec4)}};
+    vector::operateOnCpu(listed, want, assets);
 
     // Half floats, powers and roots add up over the steps; noise and light that a step amplifies may differ more in
     // single pixels, where a table or a cell of the lattice changes.

@@ -55,6 +55,55 @@ TEST_F(CanvasTest, ShapesCoverWhatTheirClosedFormsSay) {
   }
 }
 
+// A group of a list around its only drawing, which fades as the drawing's own group does.
+TEST_F(CanvasTest, AListsGroupFadesItsOnlyDrawing) {
+  makeCanvas(64);
+  TestPath left, right;
+  left.move(4, 4).line(40, 4).line(40, 60).line(4, 60).close();
+  right.move(24, 4).line(60, 4).line(60, 60).line(24, 60).close();
+  left.color = {1, 0, 0, 1};
+  right.color = {0, 1, 0, 1};
+  TestList list(context);
+  list.group(0.5f).add(makeDrawing({left.view(), right.view()})).pop();
+  const auto pixels = raster({list.item()}, 64, 64, 16);
+  for (uint32_t x = 0; x < 64; ++x) {
+    const Rgba& p = pixels[32 * 64 + x];
+    EXPECT_NEAR(p.r, x >= 4 && x < 24 ? 0.5f : 0.0f, 0.001f) << x;
+    EXPECT_NEAR(p.g, x >= 24 && x < 60 ? 0.5f : 0.0f, 0.001f) << x;
+    EXPECT_NEAR(p.a, x >= 4 && x < 60 ? 0.5f : 0.0f, 0.001f) << x;
+  }
+}
+
+// Each text in a glyph set of its own, all in one list.
+TEST_F(CanvasTest, AListShowsAnyNumberOfGlyphSets) {
+  makeCanvas(128);
+  constexpr uint32_t kSets = 64;
+  TestPath square;
+  square.move(0, 0).line(1, 0).line(1, 1).line(0, 1).close();
+  GpgpPath path = square.view();
+  TestList list(context);
+  std::vector<GpgpAsset> sets(kSets);
+  for (uint32_t i = 0; i < kSets; ++i) {
+    const float width = 1 + static_cast<float>(i % 7);
+    for (size_t p = 0; p < square.points.size(); p += 2) square.points[p] = square.points[p] > 0 ? width : 0;
+    path.points = square.points.data();
+    const GpgpGlyphSetCreateInfo info = GPGP_GLYPH_SET_CREATE_INFO_INIT;
+    ASSERT_EQ(gpgpCreateGlyphSet(context, &info, &sets[i]), GPGP_SUCCESS);
+    const VkBool32 foreground = VK_TRUE;
+    const GpgpGlyph glyph{1, &path, 1, &foreground};
+    uint32_t index = 0;
+    ASSERT_EQ(gpgpAddGlyphs(sets[i], &glyph, 1, &index), GPGP_SUCCESS) << lastMessage();
+    list.add(sets[i], {{index, float(i % 8 * 16), float(i / 8 * 16), 2, {1, 1, 1, 1}}});
+  }
+  const auto pixels = raster({list.item()}, 128, 128, 16);
+  for (uint32_t y = 0; y < 128; ++y)
+    for (uint32_t x = 0; x < 128; ++x) {
+      const uint32_t set = y / 16 * 8 + x / 16;
+      ASSERT_EQ(pixels[y * 128 + x].a, x % 16 < 2 * (1 + set % 7) && y % 16 < 2 ? 1.0f : 0.0f) << x << " " << y;
+    }
+  for (const GpgpAsset set : sets) gpgpDestroyAsset(set);
+}
+
 // Tens of thousands of shapes in a small picture, of which dozens meet in each tile and thousands in one.
 TEST_F(CanvasTest, DenseRecordsLoseNothing) {
   constexpr uint32_t kWidth = 256, kHeight = 192, kSquares = 40000, kDeep = 3000;

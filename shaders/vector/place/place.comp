@@ -70,7 +70,7 @@ void main() {
     p.bottom = tiles.w;
     const float alpha = color.a * item.color.a;
     p.item = itemIndex;
-    p.paint = paint == 0 ? 0 : slots[item.slot].paints + (paint - 1) * 4 + 1;
+    p.paint = paint == 0 ? 0 : tablesOf(item.slot).paints + (paint - 1) * 4 + 1;
     p.group = ((rest.y | rest.z) == 0 ? 0 : path + 2 + 1) | ((item.clip | item.layer) == 0 ? 0 : kItemGrouped);
     p.color = blended(color.rgb, alpha, header.flags);
     if (p.paint != 0 && !shaped) p.color = vec4(alpha);

@@ -87,7 +87,7 @@ void leaveLayer() {
   joinLight(sumPast, outerScale[depth], outerGap[depth], past, sumLight, share, scale, gap);
 }
 
-uvec4 fetchLayer(uint slot, uint layer) { return floatBitsToUint(fetch(slot, slots[slot].layers + layer - 1)); }
+uvec4 fetchLayer(uint slot, uint layer) { return floatBitsToUint(fetch(slot, tablesOf(slot).layers + layer - 1)); }
 uint layerDepth(uint slot, uint layer) { return layer == 0 ? 0 : fetchLayer(slot, layer).z; }
 // Of the groups that hold a path, the one at a depth: those of its item, `outside` of them, hold those of its drawing.
 uvec2 layerAt(ItemRecord item, uint layer, uint outside, uint wanted) { // slot, and layer
@@ -187,7 +187,7 @@ uint maskOf(uint code, Edge edge, uint x, bool area, out int difference) {
 #if RICH
 void clipBy(ItemRecord item, uint clip, uvec2 tile, uvec2 at, bool area, inout uint mask, inout int difference) {
   while (clip != 0) {
-    const uvec4 record = floatBitsToUint(fetch(item.slot, slots[item.slot].clips + clip - 1));
+    const uvec4 record = floatBitsToUint(fetch(item.slot, tablesOf(item.slot).clips + clip - 1));
     uint shown = 0;
     int shownDifference = 0;
     for (uint k = 0; k < record.y; ++k) {

@@ -36,7 +36,7 @@ vec4 gradientAt(uint slot, uint paint, vec2 at) {
   const PaintRecord g = paintOf(slot, paint);
   const float t = rampAt(g, paintPoint(g.matrix, g.origin, at));
   if (t < 0) return vec4(0);
-  vec4 color = stopColor(slot, slots[slot].stops + g.firstStop * 2, g.stopCount, t);
+  vec4 color = stopColor(slot, tablesOf(slot).stops + g.firstStop * 2, g.stopCount, t);
   const bool encoded = (g.flags & kInterpolateSrgb) != 0, wanted = (header.flags & kBlendSrgb) != 0;
   if (encoded != wanted) color.rgb = convertSrgb(color.rgb, wanted);
   return vec4(color.rgb * color.a, color.a);
@@ -72,7 +72,7 @@ vec4 imageAt(ItemRecord item, uint paint, vec2 at, vec2 dx, vec2 dy) {
   vec2 u = paintPoint(p.matrix, p.origin, at);
   vec2 ux = p.matrix.xy * dx.x + p.matrix.zw * dx.y, uy = p.matrix.xy * dy.x + p.matrix.zw * dy.y;
   if (p.kind == kPaintSlices) {
-    const uint slices = slots[item.slot].stops + p.slices * 2;
+    const uint slices = tablesOf(item.slot).stops + p.slices * 2;
     const vec4 places = fetch(item.slot, slices), there = fetch(item.slot, slices + 1);
     const vec4 across = fetch(item.slot, slices + 2), down = fetch(item.slot, slices + 3);
     const vec2 texels = across.w + down.w > 0 ? vec2(sizeOfImage(image)) : vec2(1);

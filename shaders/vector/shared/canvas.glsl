@@ -51,20 +51,21 @@ vec4 fetch(uint slot, uint i) { return drawing0[i]; }
 #if SOFTWARE // one after another: a compiler that walks all paths through a loop takes nine times as long a switch
 vec4 fetch(uint slot, uint i) {
   vec4 v = vec4(0);
-  if (slot == 0) v = drawing0[i];
-  if (slot == 1) v = drawing1[i];
-  if (slot == 2) v = drawing2[i];
-  if (slot == 3) v = drawing3[i];
-  if (slot == 4) v = drawing4[i];
-  if (slot == 5) v = drawing5[i];
-  if (slot == 6) v = drawing6[i];
-  if (slot == 7) v = drawing7[i];
-  if (slot > 7) v = shapes[i];
+  const uint from = slot & kBufferMask;
+  if (from == 0) v = drawing0[i];
+  if (from == 1) v = drawing1[i];
+  if (from == 2) v = drawing2[i];
+  if (from == 3) v = drawing3[i];
+  if (from == 4) v = drawing4[i];
+  if (from == 5) v = drawing5[i];
+  if (from == 6) v = drawing6[i];
+  if (from == 7) v = drawing7[i];
+  if (from > 7) v = shapes[i];
   return v;
 }
 #else
 vec4 fetch(uint slot, uint i) {
-  switch (slot) {
+  switch (slot & kBufferMask) {
   case 0: return drawing0[i];
   case 1: return drawing1[i];
   case 2: return drawing2[i];
@@ -78,6 +79,15 @@ vec4 fetch(uint slot, uint i) {
 }
 #endif
 #endif
+
+SlotRecord tablesOf(uint slot) {
+#if ONE_DRAWING
+  return slots[1];
+#else
+  const uvec4 tables = floatBitsToUint(shapes[header.assets + (slot >> kAssetBit)]);
+  return SlotRecord(tables.x, tables.y, tables.z, tables.w);
+#endif
+}
 
 #if !ONE_DRAWING
 ShapeRecord shapeOf(ItemRecord item) {
@@ -156,7 +166,7 @@ Grid canvasGrid() { return Grid(SAMPLES, int(header.height * SAMPLES), int(heade
 // The bits of a bin begin there; and a tile's bin.
 uint bitsOf(uint bin) { return kFirstBin + bin * header.binWords + kBinHead; }
 uint binOf(uvec2 tile) { return (tile.y >> header.binShift) * header.binsX + (tile.x >> header.binShift); }
-uint clipRecord(uint clip) { return slots[kShapeSlot].clips + clip - 1; } // its vec4
+uint clipRecord(uint clip) { return slots[0].clips + clip - 1; } // its vec4
 vec2 canvasTiles() { return vec2(header.tilesX, header.tilesY); }
 
 // What a path does to a tile: 0 nothing, 1 it covers all, 2 + entry * 4 + inside: it has edges there.

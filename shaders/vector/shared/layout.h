@@ -107,7 +107,7 @@ struct ItemRecord {
   vec4 color;           // straight: what kForeground paths take; alpha is the opacity of all its paths
   vec4 scissor;         // pixels: what lies outside is not drawn; left, top, right, bottom
   float side;           // -1 where the transform mirrors, else 1
-  uint slot;            // the buffer's binding
+  uint slot;            // of its asset: kAssetBit
   uint firstSegment;    // of the item's segments in the recording; they end where the next item's begin
   uint firstPath;       // of the item's paths in the recording
   uint segments, paths; // where they begin in the slot's buffer, in vec4: SegmentRecord, BoxedPath
@@ -148,7 +148,7 @@ struct ItemClipRecord {
   uint pad0, pad1;
 };
 
-// A drawing that a recording uses: where its tables begin in its buffer, in vec4.
+// An asset that a recording shows: where its tables begin in its buffer, in vec4.
 struct SlotRecord {
   uint paints, stops, clips, layers;
 };
@@ -184,12 +184,14 @@ struct CanvasHeader {
   uint glyphs, glyphLimit;
   uint shapes, shapeLimit; // needed; room for as many
   uint sources, sourceLimit;
-  uint shapeTables;                  // vec4: ShapeRecords, their paints, stops, clips and layers: behind placements
+  uint shapeTables;                  // vec4: ShapeRecords, their paints, stops, clips and layers, SlotRecords of all
+                                     // assets: behind placements
   uint binWords;                     // of a bin: kBinHead, then a bit for each path
   uint binListLimit;                 // paths in all bins' lists
   uint zero;                         // 0, which no compiler knows (raster.comp)
   uint layerPixels, layerOperations; // needed
-  uint pad0, pad1;
+  uint assets;                       // where the SlotRecords begin, in vec4
+  uint pad0;
   vec4 background;
 };
 
@@ -231,10 +233,13 @@ GPGP_CONST uint kImageByTexel = 4u;       // its texels are converted before the
 GPGP_CONST uint kMaxClipDepth = 16u;
 GPGP_CONST uint kMaxLayerDepth = 4u;
 GPGP_CONST uint kForeground = 1u; // takes the colour of the item
-GPGP_CONST uint kMaxSlots = 8u;
-GPGP_CONST uint kShapeSlot = 8u; // the buffer of the recording's own shapes
-GPGP_CONST uint kSlots = 9u;
-GPGP_CONST uint kSlotBit = 24u, kSmallGlyphBit = 31u;
+// A slot: in its lowest bits the binding of a buffer, in which any number of drawings and glyph sets lie, and from
+// kAssetBit on which of the recording's assets it is. Asset 0 is what the recording itself has, in a buffer of its own.
+GPGP_CONST uint kMaxBuffers = 8u;
+GPGP_CONST uint kBufferMask = 15u, kAssetBit = 4u, kMaxAssets = 2047u;
+GPGP_CONST uint kShapeSlot = kMaxBuffers;
+GPGP_CONST uint kSlots = 2u; // whose records lie behind the header: of asset 0 and, for recordings of one, of asset 1
+GPGP_CONST uint kSlotBit = 16u, kSmallGlyphBit = 31u;
 GPGP_CONST uint kShapeRound = 1u;
 GPGP_CONST float kUnbounded = 1e30f; // sides of a scissor that is none
 GPGP_CONST uint kItemGrouped = 0x80000000u;

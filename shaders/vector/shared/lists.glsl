@@ -64,7 +64,7 @@ uint clipsIn(uint item, uint clip, uvec2 tile, inout uint steps) {
   const uint slot = items[item].slot;
   uint found = kEven;
   while (clip != 0) {
-    const uvec4 record = floatBitsToUint(fetch(slot, slots[slot].clips + clip - 1));
+    const uvec4 record = floatBitsToUint(fetch(slot, tablesOf(slot).clips + clip - 1));
     if (record.y > kManyClipPaths) return kRich;
     uint shown = kHidden;
     for (uint k = 0; k < record.y && shown != kEven; ++k, ++steps) {

@@ -58,7 +58,7 @@ struct Compositor {
       const uint32_t first = input.word(slot, path.paint - 1 + 3, 0), count = input.word(slot, path.paint - 1 + 3, 1);
       if (input.word(slot, path.paint - 1 + 2, 1) >= shader::kPaintImage) continue;
       for (uint32_t k = 0; k < count; ++k) {
-        const vec4 stop = input.fetch(slot, input.slots[slot].stops + (first + k) * 2);
+        const vec4 stop = input.fetch(slot, input.slots(slot).stops + (first + k) * 2);
         see(stop);
         see(vec4(shader::decodeSrgb(vec3(stop)), 1));
       }
@@ -69,7 +69,7 @@ struct Compositor {
     std::vector<Group> found;
     const auto add = [&](uint32_t slot, uint32_t layer, uint32_t item) { // the innermost first
       while (layer) {
-        const size_t at = input.slots[slot].layers + layer - 1;
+        const size_t at = input.slots(slot).layers + layer - 1;
         found.push_back({slot, layer, item, input.fetch(slot, at).x});
         layer = input.word(slot, at, 1);
       }
@@ -95,7 +95,7 @@ struct Compositor {
     CpuCoverage shown{every, 0};
     const uint32_t own = path.group & ~kItemGrouped;
     for (uint32_t clip = own ? input.word(item.slot, own - 1, 1) : 0; clip;) {
-      const size_t at = input.slots[item.slot].clips + clip - 1;
+      const size_t at = input.slots(item.slot).clips + clip - 1;
       const uint32_t first = input.word(item.slot, at, 0), count = input.word(item.slot, at, 1);
       CpuCoverage all;
       for (uint32_t k = 0; k < count; ++k) join(all, coverageOf(item.firstPath + first + k), true);
@@ -103,7 +103,7 @@ struct Compositor {
       clip = input.word(item.slot, at, 2);
     }
     for (uint32_t clip = path.group & kItemGrouped ? item.clip : 0; clip;) {
-      const size_t at = input.slots[kShapeSlot].clips + clip - 1;
+      const size_t at = input.slots(kShapeSlot).clips + clip - 1;
       join(shown, coverageOf(input.word(kShapeSlot, at, 0)), false);
       clip = input.word(kShapeSlot, at, 1);
     }

@@ -5,6 +5,7 @@
 // the GPU's bit for bit; colours within bounds that it works out itself, as roots, powers and filters are only as exact
 // as the device's. For tests and tools; never part of the library.
 #pragma once
+#include "vector/cpu_reference/asset_table.h"
 #include "vector/shared/tiles.h"
 
 #include <vulkan/vulkan_core.h>
@@ -26,17 +27,17 @@ struct CpuImage {
 /// What the GPU finds in its buffers, word for word.
 struct CpuInput {
   shader::CanvasHeader header{};
-  std::array<shader::SlotRecord, shader::kSlots> slots{};
-  std::array<std::span<const shader::vec4>, shader::kSlots> tables; ///< drawings and glyph sets; the recording's shapes
+  std::vector<AssetTable> assets; ///< the recording's shapes; drawings and glyph sets
   std::span<const shader::PlacementRecord> placements;
   std::span<const shader::ItemRecord> sources;
   std::span<const CpuImage> images;
   float subTexel = 1.0f / 256; ///< how exactly the device places a sample between texels
 
-  const shader::vec4& fetch(uint32_t slot, size_t i) const { return tables[slot][i]; }
+  const shader::vec4& fetch(uint32_t slot, size_t i) const { return tableOf(assets, slot)[i]; }
   uint32_t word(uint32_t slot, size_t i, int component) const {
-    return shader::floatBitsToUint(tables[slot][i][component]);
+    return shader::floatBitsToUint(fetch(slot, i)[component]);
   }
+  const shader::SlotRecord& slots(uint32_t slot) const { return tableOf(assets, slot).slots; }
 };
 
 /// What a path covers of a pixel: samples, and by how much its area differs from them (1/256 of a sample).

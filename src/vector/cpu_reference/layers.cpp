@@ -10,7 +10,7 @@ using glm::normalize;
 namespace {
 class Operator {
 public:
-  Operator(std::span<uvec2> pixels, std::span<const std::span<const vec4>> tables) : pixels_(pixels), tables_(tables) {}
+  Operator(std::span<uvec2> pixels, std::span<const vector::AssetTable> assets) : pixels_(pixels), assets_(assets) {}
 
   void run(const OperationRecord& o) {
     for (int y = o.result.top; y < o.result.bottom; ++y)
@@ -32,7 +32,7 @@ private:
     const vec2 a = glm::unpackHalf2x16(pixel.x), b = glm::unpackHalf2x16(pixel.y);
     return {a.x, a.y, b.x, b.y};
   }
-  const vec4& tableAt(uint slot, uint entry) const { return tables_[slot][entry]; }
+  const vec4& tableAt(uint slot, uint entry) const { return vector::tableOf(assets_, slot)[entry]; }
 
 #include "vector/layers/operate.h"
 
@@ -53,7 +53,7 @@ private:
   }
 
   std::span<uvec2> pixels_;
-  std::span<const std::span<const vec4>> tables_;
+  std::span<const vector::AssetTable> assets_;
 };
 } // namespace
 } // namespace gpgp::shader
@@ -61,8 +61,8 @@ private:
 namespace gpgp::vector {
 
 void operateOnCpu(std::span<const shader::OperationRecord> operations, std::span<shader::uvec2> pixels,
-                  std::span<const std::span<const shader::vec4>> tables) {
-  shader::Operator op(pixels, tables);
+                  std::span<const AssetTable> assets) {
+  shader::Operator op(pixels, assets);
   for (const shader::OperationRecord& o : operations.subspan(1)) op.run(o);
 }
 

@@ -43,7 +43,7 @@ Shown shownIn(const CpuInput& input, const CpuPlaces& places, const PlacedPath& 
   if (const uint32_t own = p.group & ~kItemGrouped) {
     if (input.word(item.slot, own - 1, 2)) return Shown::rich; // a group that fades
     for (uint32_t k = input.word(item.slot, own - 1, 1); k;) {
-      const size_t at = input.slots[item.slot].clips + k - 1;
+      const size_t at = input.slots(item.slot).clips + k - 1;
       const uint32_t first = input.word(item.slot, at, 0), count = input.word(item.slot, at, 1);
       if (count > kManyClipPaths) return Shown::rich;
       Touch all; // their union: whole where the first one that is, or else the last one that touches, says so
@@ -59,7 +59,7 @@ Shown shownIn(const CpuInput& input, const CpuPlaces& places, const PlacedPath& 
   if ((p.group & kItemGrouped) == 0) return found;
   if (item.layer) found = Shown::rich;
   for (uint32_t k = item.clip; k;) {
-    const size_t at = input.slots[kShapeSlot].clips + k - 1;
+    const size_t at = input.slots(kShapeSlot).clips + k - 1;
     const Touch touch = touchOf(places, input.word(kShapeSlot, at, 0), x, y);
     clip(!touch.any(), touch.all());
     if (found == Shown::hidden) return found;

@@ -45,12 +45,12 @@ struct Paint {
   uint32_t slot;
   PaintRecord record;
   Paint(const CpuInput& from, uint32_t slotIndex, uint32_t at) : input(from), slot(slotIndex) {
-    std::memcpy(&record, &from.tables[slot][at], sizeof record);
+    std::memcpy(&record, &from.fetch(slot, at), sizeof record);
   }
   bool blendSrgb() const { return input.header.flags & shader::kBlendSrgb; }
 
   vec4 stopColor(float t) const {
-    const size_t first = input.slots[slot].stops + record.firstStop * 2;
+    const size_t first = input.slots(slot).stops + record.firstStop * 2;
     uint32_t before = 0; // stops that lie at or before t
     while (before < record.stopCount && input.fetch(slot, first + before * 2 + 1).x <= t) ++before;
     if (before == 0) return input.fetch(slot, first);
@@ -119,7 +119,7 @@ struct Paint {
     const bool encodes = ((holds & shader::kImageEncoded) != 0) != blendSrgb();
     const auto textureAt = [&](vec2 u) {
       if (record.kind != shader::kPaintSlices) return u;
-      const size_t slices = input.slots[slot].stops + record.slices * 2;
+      const size_t slices = input.slots(slot).stops + record.slices * 2;
       const vec4 places = input.fetch(slot, slices), there = input.fetch(slot, slices + 1);
       const vec4 across = input.fetch(slot, slices + 2), down = input.fetch(slot, slices + 3);
       const vec2 texels = across.w + down.w > 0 ? size : vec2(1);

@@ -63,7 +63,7 @@ PlacedPath placePath(const CpuInput& input, const ItemRecord& item, uint32_t ite
   const shader::uvec4 where = shader::tileBox(item, box, frame, tiles);
   PlacedPath p{where.x, where.y, where.z, where.w, 0, itemIndex, 0, 0, {}};
   const float alpha = color.w * item.color.w;
-  p.paint = paint ? input.slots[item.slot].paints + (paint - 1) * 4 + 1 : 0;
+  p.paint = paint ? input.slots(item.slot).paints + (paint - 1) * 4 + 1 : 0;
   p.group = (clip | layer ? path + 2 + 1 : 0) | (item.clip | item.layer ? kItemGrouped : 0);
   p.color = p.paint && !shaped ? vec4(alpha) : shader::blended(vec3(color), alpha, input.header.flags);
   return p;

@@ -12,15 +12,15 @@ using enum core::UseKind;
 using shader::CanvasCounters;
 using shader::CanvasHeader;
 using shader::ItemRecord;
-using shader::kMaxSlots;
+using shader::kMaxBuffers;
 using shader::PlacementRecord;
 using shader::SlotRecord;
 
 PassBuilder::PassBuilder(const CanvasSizes& canvas, const core::Device& device, std::pmr::memory_resource* memory)
     : list(memory), sizes(canvas),
       subgroups(device.subgroupArithmetic && (canvas.software || device.subgroupSize >= 32)) {
-  static constexpr const char* kNames[kMaxSlots] = {"drawing 0", "drawing 1", "drawing 2", "drawing 3",
-                                                    "drawing 4", "drawing 5", "drawing 6", "drawing 7"};
+  static constexpr const char* kNames[kMaxBuffers] = {"drawing 0", "drawing 1", "drawing 2", "drawing 3",
+                                                      "drawing 4", "drawing 5", "drawing 6", "drawing 7"};
   for (const char* name : kNames) list.add({name, buffer, 0, true});
   history = list.add({"history", buffer, 0, true});
   image8 = list.add({"target", image, 0, true});
@@ -30,7 +30,8 @@ PassBuilder::PassBuilder(const CanvasSizes& canvas, const core::Device& device, 
                      placed = VkDeviceSize(room.items) + room.glyphs + room.shapes,
                      shapeBytes = room.shapes * VkDeviceSize(sizeof(shader::ShapeRecord) + sizeof(PaintRecord) +
                                                              2 * sizeof(StopRecord)) +
-                                  room.items * VkDeviceSize(sizeof(shader::ItemClipRecord) + sizeof(LayerRecord));
+                                  room.items * VkDeviceSize(sizeof(shader::ItemClipRecord) + sizeof(LayerRecord)) +
+                                  (maxAssets(room) + 1) * VkDeviceSize(sizeof(SlotRecord));
   fromHost = list.add({"constants", core::ResourceKind::constants,
                        heads + room.items * sizeof(ItemRecord) + placed * sizeof(PlacementRecord) + shapeBytes});
   paths = list.add({"paths", scratch, VkDeviceSize(room.paths) * sizeof(shader::PlacedPath)});
@@ -70,7 +71,7 @@ core::Pass& PassBuilder::dispatch(const char* name, Spirv spirv, std::initialize
                                   uint32_t condition) {
   core::Pass& pass =
       list.dispatch(name, list.add(core::ShaderDesc{name, spirv}), {{items, read}, {shapes, read}}, groups);
-  for (core::ResourceIndex i = 0; i < kMaxSlots; ++i) pass.uses[pass.useCount++] = {i, read};
+  for (core::ResourceIndex i = 0; i < kMaxBuffers; ++i) pass.uses[pass.useCount++] = {i, read};
   for (const core::Use& use : uses) pass.uses[pass.useCount++] = use;
   pass.condition = condition;
   return pass;
@@ -108,7 +109,7 @@ void PassBuilder::fill(const char* name, Spirv spirv, bool fromLists, uint32_t c
                              {segments, read},
                              {rows, read}},
                             counters, fromLists ? offsetof(CanvasCounters, rowsX) : offsetof(CanvasCounters, fillX));
-  for (core::ResourceIndex i = 0; i < kMaxSlots; ++i) pass.uses[pass.useCount++] = {i, read};
+  for (core::ResourceIndex i = 0; i < kMaxBuffers; ++i) pass.uses[pass.useCount++] = {i, read};
   pass.condition = condition;
   pass.beside = beside;
 }
@@ -125,7 +126,7 @@ core::Pass& PassBuilder::listedTiles(const char* name, Spirv spirv, uint32_t con
                                             {counters, crowded ? readWrite : read}},
                                            bins, arguments * 4);
   const bool one = condition == kPlain || condition == kPaintsOne || condition == kRichOne || condition == kAsideOne;
-  for (core::ResourceIndex i = 0; i < (one ? 1 : kMaxSlots); ++i) pass.uses[pass.useCount++] = {i, read};
+  for (core::ResourceIndex i = 0; i < (one ? 1 : kMaxBuffers); ++i) pass.uses[pass.useCount++] = {i, read};
   if (condition == kImages || condition == kRichImages || condition == kAsideImages) useImages(pass);
   return pass;
 }

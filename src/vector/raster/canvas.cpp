@@ -143,7 +143,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   // Placements, of which texts have many, are written where they will lie.
   std::byte* const place = constants();
   auto* const placements = reinterpret_cast<shader::PlacementRecord*>(
-      place ? place + sizeof(CanvasHeader) + sizeof(Gather::slots) : nullptr);
+      place ? place + sizeof(CanvasHeader) + shader::kSlots * sizeof(shader::SlotRecord) : nullptr);
   if (!placements) return record(r); // which says why
   // Recordings that show layers are planned first.
   const bool layered =
@@ -162,12 +162,12 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     if (auto ok = gather.add(i, assets[i]); !ok) return ok;
   CanvasHeader header{};
   gather.finish(header);
-  for (uint32_t slot = 0; slot < gather.slotCount; ++slot) {
-    r.bindings[slot].ownBuffer = gather.bound[slot]->buffer();
-    r.bindings[slot].ownSize = gather.bound[slot]->size();
+  for (uint32_t i = 0; const Gather::BoundBuffer& bound : gather.buffers()) {
+    r.bindings[i].ownBuffer = bound.buffer;
+    r.bindings[i++].ownSize = bound.size;
   }
   const bool gradients = gather.gradients, projective = gather.projective, images = gather.images;
-  const bool several = gather.slotCount > 1 || gather.lists;
+  const bool several = gather.assetCount > 1 || gather.lists;
 
   header.width = width;
   header.height = height;
@@ -211,19 +211,20 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   if (!composites) header.background = background; // else what layers make lies on it
   const auto bytes = [](const auto& records, uint32_t count) { return std::as_bytes(std::span(records).first(count)); };
   r.constants = {bytes(std::span(&header, 1), 1),
-                 bytes(gather.slots, shader::kSlots),
+                 std::as_bytes(gather.firstSlots()),
                  std::as_bytes(std::span(placements, gather.placements())),
                  bytes(tables_.sources, gather.sources),
                  bytes(tables_.shapes, gather.shapes),
                  bytes(tables_.paints, gather.paints),
                  bytes(tables_.stops, gather.stops),
                  bytes(tables_.clips, gather.clips),
-                 bytes(tables_.layers, gather.layers)};
+                 bytes(tables_.layers, gather.layers),
+                 bytes(tables_.slots, gather.assetCount + 1)};
 
   if (history) {
     core::Binding& binding = r.bindings[composites ? shader::kBindLayeredHistory : shader::kBindHistory];
     binding.ownBuffer = history->buffer();
-    binding.ownSize = history->size();
+    binding.ownSize = history->bufferSize();
   }
   const uint32_t target = targetOf(info), image = composites ? kNoImage : target; // image: of the raster
   if (target != kNoImage)

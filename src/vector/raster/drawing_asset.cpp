@@ -80,15 +80,21 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
           core::makeError(GPGP_ERROR_UNSUPPORTED, "paths[%u] is left out of the patches: %s", left.path, left.reason)
               .text);
   }
-  asset->pathTable_ = tables.paths;
-  asset->tables_ = tables.slots;
-  asset->entryTable_ = tables.entries;
-  asset->lattices_.assign(tables.lattices.begin(), tables.lattices.end());
   if (!drawing.plan.empty()) asset->setLayers(drawing, outlines);
   if (tables.bytes.size() > context.device.limits.maxStorageBufferRange)
     return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing has %zu bytes, but this device binds at most %u",
                            tables.bytes.size(), context.device.limits.maxStorageBufferRange);
-  if (auto ok = asset->makeResident(GPGP_SERVICE_VECTOR, std::move(tables.bytes), 16); !ok) return ok.error();
+  if (auto ok = asset->makeResident(GPGP_SERVICE_VECTOR, std::move(tables.bytes), 16, Room::shared); !ok)
+    return ok.error();
+  // From here on, what lies in the buffer is counted from its beginning.
+  const uint32_t first = static_cast<uint32_t>(asset->offset() / sizeof(shader::vec4));
+  asset->segmentTable_ = first;
+  asset->pathTable_ = first + tables.paths;
+  asset->patchWords_ += first;
+  const shader::SlotRecord& t = tables.slots;
+  asset->tables_ = {first + t.paints, first + t.stops, first + t.clips, first + t.layers};
+  asset->entryTable_ = first + tables.entries;
+  for (const uint32_t lattice : tables.lattices) asset->lattices_.push_back(first + lattice);
   if (!editable && hitTestable)
     asset->hit_.emplace(Hit{std::move(outlines), std::move(drawing.paths), std::move(drawing.clips)});
   if (editable) asset->kept_.emplace(Kept{std::move(drawing), std::move(outlines)});

@@ -1,4 +1,4 @@
-// Drawings and canvas histories as the engine holds them: one device buffer each, resident after upload.
+// Drawings and canvas histories as the engine holds them: resident after upload.
 #pragma once
 #include "core/resident.h"
 #include "vector/patch/patches.h"
@@ -8,7 +8,7 @@
 
 namespace gpgp::vector {
 
-/// A drawing's tables in one buffer: segments, paths with their boxes, paints, stops, clips, layers.
+/// A drawing's tables, one behind the other: segments, paths with their boxes, paints, stops, clips, layers.
 struct DrawingTables {
   std::pmr::vector<std::byte> bytes;
   uint32_t paths;                      ///< where BoxedPaths begin, in vec4
@@ -64,9 +64,9 @@ public:
     uint32_t segmentTable, pathTable, firstPath, paths;
   };
   Run run(uint32_t index) const {
-    if (plan_.empty()) return {0, pathTable_, 0, paths()};
+    if (plan_.empty()) return {segmentTable_, pathTable_, 0, paths()};
     const LayerRun& r = plan_.runs[index];
-    return {segments(r.firstPath) * uint32_t(sizeof(shader::SegmentRecord) / 16),
+    return {segmentTable_ + segments(r.firstPath) * uint32_t(sizeof(shader::SegmentRecord) / 16),
             pathTable_ + r.firstPath * uint32_t(sizeof(shader::BoxedPath) / 16), r.firstPath, r.pathCount};
   }
   bool gradients() const { return tables_.stops > tables_.paints; }
@@ -95,7 +95,7 @@ private:
     std::pmr::vector<ClipRecord> clips;
   };
   std::optional<Hit> hit_; // where it is hit-testable, but not editable
-  uint32_t curves_ = 0, patches_ = 0, images_ = 0, pathTable_ = 0, layerDepth_ = 0;
+  uint32_t curves_ = 0, patches_ = 0, images_ = 0, segmentTable_ = 0, pathTable_ = 0, layerDepth_ = 0;
   GpgpDrawingMethods methods_ = GPGP_DRAWING_FLATTENED;
   uint32_t patchWords_ = 0, pathsLeftOut_ = 0;
   PatchQuads quads_;

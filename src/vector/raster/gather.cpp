@@ -4,6 +4,7 @@
 #include "vector/shared/shape.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdarg>
 
 namespace gpgp::vector {
@@ -15,7 +16,9 @@ using shader::PlacementRecord;
 ItemTables::ItemTables(const ItemBudgets& budgets, std::pmr::memory_resource* memory)
     : sources(budgets.items, memory), shapes(budgets.shapes, memory), paints(budgets.shapes, memory),
       stops(size_t(budgets.shapes) * 2, memory), clips(budgets.items, memory), layers(budgets.items, memory),
-      clipStates(budgets.items, memory), groupStates(budgets.items, memory) {}
+      clipStates(budgets.items, memory), groupStates(budgets.items, memory), assets(maxAssets(budgets), memory),
+      assetSlots(assets.size(), memory), slots(assets.size() + 1, memory),
+      assetCells(std::bit_ceil(2 * assets.size()), memory) {}
 
 bool ItemAsset::layered() const {
   if (drawing) return !drawing->plan().empty();
@@ -36,13 +39,30 @@ core::Error Gather::wrong(GpgpResult code, const char* format, ...) const {
   return core::makeError(code, "items[%u].list, entry %u%s", index_, entry_, text);
 }
 
-Result<uint32_t> Gather::bind(const core::Resident& asset) { // to a slot, if one is left
-  uint32_t slot = 0;
-  while (slot < slotCount && bound[slot] != &asset) ++slot;
-  if (slot == shader::kMaxSlots)
-    return wrong(GPGP_ERROR_UNSUPPORTED, ": a recording draws at most %u different drawings and glyph sets",
-                 shader::kMaxSlots);
-  if (slot == slotCount) bound[slotCount++] = &asset;
+/// The slot of an asset, whose tables are there.
+Result<uint32_t> Gather::bind(const core::Resident& asset, const shader::SlotRecord& tables) {
+  if (assetCount && tables_.assets[assetCount - 1] == &asset) return tables_.assetSlots[assetCount - 1];
+  const size_t mask = tables_.assetCells.size() - 1;
+  size_t cell = (reinterpret_cast<uintptr_t>(&asset) >> 4) * 0x9e3779b97f4a7c15u >> 32 & mask;
+  for (; tables_.assetCells[cell]; cell = (cell + 1) & mask)
+    if (const size_t index = tables_.assetCells[cell] - 1u; tables_.assets[index] == &asset)
+      return tables_.assetSlots[index];
+  if (assetCount == tables_.assets.size())
+    return wrong(GPGP_ERROR_UNSUPPORTED, ": this canvas draws at most %u different drawings and glyph sets at a time",
+                 assetCount);
+  uint32_t binding = 0;
+  while (binding < bufferCount_ && buffers_[binding].buffer != asset.buffer()) ++binding;
+  if (binding == shader::kMaxBuffers)
+    return wrong(GPGP_ERROR_UNSUPPORTED,
+                 ": the drawings and glyph sets of a recording lie in more than %u buffers, each of at most %u bytes "
+                 "on this device",
+                 shader::kMaxBuffers, context_.device.limits.maxStorageBufferRange);
+  if (binding == bufferCount_) buffers_[bufferCount_++] = {asset.buffer(), asset.bufferSize()};
+  tables_.assets[assetCount] = &asset;
+  tables_.slots[assetCount + 1] = tables;
+  tables_.assetCells[cell] = static_cast<uint16_t>(assetCount + 1);
+  const uint32_t slot = (assetCount + 1) << shader::kAssetBit | binding;
+  tables_.assetSlots[assetCount++] = slot;
   return slot;
 }
 
@@ -69,7 +89,7 @@ uint32_t Gather::addSource(const Map& map, float opacity, uint32_t firstImage, c
   item.clip = clip.chain;
   item.layer = clip.layer;
   groups = groups || item.clip || item.layer;
-  lists = lists || item.clip || shader::hasScissor(item);
+  lists = lists || item.clip || item.layer || shader::hasScissor(item);
   projective = projective || item.perspective.w > 0;
   tables_.sources[sources] = item;
   return sources++;
@@ -117,9 +137,8 @@ Result<void> Gather::planDrawing(const DrawingAsset& drawing, const Map& map, fl
     return {};
   }
   const shader::vec4 nothing(0);
-  const auto slot = bind(drawing); // where filters find their tables
+  const auto slot = bind(drawing, drawing.tables()); // where filters find their tables
   if (!slot) return slot.error();
-  slots[*slot] = drawing.tables();
   if (auto ok = planner_->addLayered(drawing, *slot, map, opacity, own.hidden ? nothing : own.scissor); !ok)
     return wrong(ok.error().code, ": %s", ok.error().text);
   return {};
@@ -149,9 +168,8 @@ Result<void> Gather::addLayered(const DrawingAsset& drawing, uint32_t firstImage
     pathsDropped_ += drawing.paths();
     return {};
   }
-  const auto slot = bind(drawing);
+  const auto slot = bind(drawing, drawing.tables());
   if (!slot) return slot.error();
-  slots[*slot] = drawing.tables();
   for (const auto runs = planner_->runs(); nextRun_ < runs.size() && runs[nextRun_].unit == unit; ++nextRun_) {
     const PlacedRun& run = runs[nextRun_];
     region_ = run.region;
@@ -217,9 +235,8 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
     addRun(drawing, 0, source, 0);
     return {};
   }
-  const auto slot = bind(drawing);
+  const auto slot = bind(drawing, drawing.tables());
   if (!slot) return slot.error();
-  slots[*slot] = drawing.tables();
   addRun(drawing, 0, source, *slot);
   return {};
 }
@@ -394,12 +411,13 @@ void Gather::finish(shader::CanvasHeader& header) {
   header.shapeLimit = budgets_.shapes;
   header.sources = std::max(sourcesNeeded_, layersNeeded_);
   header.sourceLimit = budgets_.items;
-  shader::SlotRecord& own = slots[kShapeSlot];
+  shader::SlotRecord& own = tables_.slots[0];
   own.paints = shapes * 4;
   own.stops = own.paints + paints * 4;
   own.clips = own.stops + stops * 2;
   own.layers = own.clips + clips;
-  header.shapeTables = own.layers + layers;
+  header.assets = own.layers + layers;
+  header.shapeTables = header.assets + 1 + assetCount;
 }
 
 } // namespace gpgp::vector

@@ -23,6 +23,8 @@ struct ItemAsset {
 struct ItemBudgets {
   uint32_t items, glyphs, shapes, paths;
 };
+/// Different drawings and glyph sets of a recording.
+constexpr uint32_t maxAssets(const ItemBudgets& budgets) { return std::min(budgets.items, shader::kMaxAssets); }
 
 /// Room for what one recording has, made once.
 struct ItemTables {
@@ -46,6 +48,10 @@ struct ItemTables {
   std::pmr::vector<shader::LayerRecord> layers;
   std::pmr::vector<ClipState> clipStates; ///< of the list at hand, as are these
   std::pmr::vector<GroupState> groupStates;
+  std::pmr::vector<const core::Resident*> assets; ///< different ones
+  std::pmr::vector<uint32_t> assetSlots;          ///< theirs
+  std::pmr::vector<shader::SlotRecord> slots;     ///< by asset; the first one is the recording's own
+  std::pmr::vector<uint16_t> assetCells; ///< hash table, open addresses: 1 + index; 0: empty; half full at most
 };
 
 class Gather {
@@ -57,7 +63,10 @@ public:
          const GpgpCanvasInfo& info, uint32_t smallGlyphRoom, LayerPlanner* planner = nullptr)
       : planner_(planner), base_{{0, 0, static_cast<int>(info.width), static_cast<int>(info.height)}, 0, 0},
         region_(base_), context_(context), budgets_(budgets), tables_(tables), placed_(placed), info_(info),
-        smallGlyphRoom_(smallGlyphRoom) {}
+        smallGlyphRoom_(smallGlyphRoom) {
+    std::fill(tables.assetCells.begin(), tables.assetCells.end(), uint16_t(0));
+    std::fill_n(tables.slots.begin(), shader::kSlots, shader::SlotRecord{});
+  }
 
   /// What the planner must know of an item; before all that follows.
   core::Result<void> plan(uint32_t index, const ItemAsset& asset);
@@ -66,9 +75,15 @@ public:
   /// Counts into the header, and where the tables of shapes will lie.
   void finish(shader::CanvasHeader& header);
 
-  shader::SlotRecord slots[shader::kSlots] = {};
-  const core::Resident* bound[shader::kMaxSlots] = {};
-  uint32_t slotCount = 0;
+  /// Records of the first slots, as they lie behind the header.
+  std::span<const shader::SlotRecord> firstSlots() const { return std::span(tables_.slots).first(shader::kSlots); }
+  std::span<const core::Resident* const> assets() const { return std::span(tables_.assets).first(assetCount); }
+  uint32_t assetCount = 0; ///< different drawings and glyph sets
+  struct BoundBuffer {
+    VkBuffer buffer;
+    VkDeviceSize size;
+  };
+  std::span<const BoundBuffer> buffers() const { return std::span(buffers_).first(bufferCount_); }
   bool gradients = false, projective = false, images = false, groups = false; ///< whether there are any
   bool lists = false; ///< there are shapes, scissors or clips, which shaders for one drawing do not know
   uint32_t smallGlyphs() const { return used_.smallGlyphs; }             ///< small glyphs
@@ -97,10 +112,12 @@ private:
   void addShapes(const List& list, std::span<const List::Shape> from, uint32_t source);
   bool addShape(const shader::ShapeRecord& shape, uint32_t source, const shader::vec4& color);
   uint32_t addSource(const Map& map, float opacity, uint32_t firstImage, const Chain& clip);
-  core::Result<uint32_t> bind(const core::Resident& asset);
+  core::Result<uint32_t> bind(const core::Resident& asset, const shader::SlotRecord& tables);
   [[gnu::format(printf, 3, 4)]] core::Error wrong(GpgpResult code, const char* format, ...) const;
 
   static constexpr uint32_t kNone = UINT32_MAX;
+  BoundBuffer buffers_[shader::kMaxBuffers] = {};
+  uint32_t bufferCount_ = 0;
   LayerPlanner* const planner_;
   LayerRegion base_, region_; ///< where plain things go; where what is added lies
   uint32_t unit_ = 0, nextRun_ = 0;

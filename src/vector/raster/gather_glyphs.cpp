@@ -52,6 +52,7 @@ private:
 /// Some glyphs of a text, by numbers, so that four are asked about at a time.
 struct Gather::Block {
   static constexpr size_t kMost = 64;
+  uint32_t firstRecord = 0; ///< of the set
   const GpgpGlyphInstance* from[kMost];
   const GlyphSet::Glyph* glyph[kMost];
   float x[kMost], y[kMost], reachX[kMost], reachY[kMost]; ///< boxes: middles, and from there to the sides
@@ -127,7 +128,8 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
     if (!placesGlyphs(item)) return {}; // covers nothing
     smallGlyph = smallGlyphRoom_ && item.perspective.w == 0;
     map = item;
-    const auto slot = bind(set);
+    const uint32_t first = set.firstRecord();
+    const auto slot = bind(set, {first, first, first, first}); // its glyphs count paints and stops from there
     if (!slot) return slot.error();
     source |= *slot << shader::kSlotBit;
   }
@@ -135,6 +137,7 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
   const std::span<const GlyphSet::Glyph> table = set.table();
   const uint64_t frame = context_.current(), arrived = set.arrived();
   Block block;
+  block.firstRecord = set.firstRecord();
   for (size_t i = 0; i < glyphs.size();) {
     const size_t first = i;
     Doubt doubt;
@@ -191,8 +194,9 @@ void Gather::addBlock(const Block& block, uint32_t source) {
                                   {c[0], c[1], c[2], c[3]},
                                   used.segments,
                                   used.paths,
-                                  glyph.first,
-                                  glyph.first + glyph.segments * uint32_t(sizeof(shader::SegmentRecord) / 16)};
+                                  block.firstRecord + glyph.first,
+                                  block.firstRecord + glyph.first +
+                                      glyph.segments * uint32_t(sizeof(shader::SegmentRecord) / 16)};
     if (smallGlyph) {
       used.smallGlyphEntries += tiles;
       ++used.smallGlyphs;

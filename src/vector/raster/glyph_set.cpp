@@ -115,7 +115,7 @@ core::Result<core::Unique<GlyphSet>> GlyphSet::create(core::Context& context, co
   set->capacity_ = static_cast<uint32_t>(maxBytes / 16);
   set->freeBlocks_.reserve(maxGlyphs + 2);
   set->freeBlocks_.push_back({0, set->capacity_});
-  if (auto ok = set->makeGrowing(GPGP_SERVICE_VECTOR, maxBytes); !ok) return ok.error();
+  if (auto ok = set->makeGrowing(GPGP_SERVICE_VECTOR, maxBytes, Room::shared); !ok) return ok.error();
   if (baked) set->add(*baked, 0);
   return set;
 }

@@ -51,6 +51,8 @@ public:
   }
   const Glyph* glyph(uint32_t index) const { return find(glyphs_, index); }
   using Resident::arrived;
+  /// Where the set begins in its buffer, in vec4; `first` and `patches` of glyphs count from there.
+  uint32_t firstRecord() const { return static_cast<uint32_t>(offset() / 16); }
   /// Its segments, its BoxedPaths, and, at the next multiple of their size, its gradients' records and stops.
   std::span<const std::byte> block(const Glyph& glyph) const {
     return Resident::bytes().subspan(size_t(glyph.first) * 16, size_t(glyph.size) * 16);

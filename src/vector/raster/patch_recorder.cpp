@@ -154,7 +154,7 @@ Result<void> PatchRecorder::begin(const GpgpPatchDrawInfo& info) {
 
 uint32_t PatchRecorder::slotOf(const core::Resident& asset) {
   for (uint32_t i = 0; i < slots_; ++i)
-    if (bound_[i] == &asset) return i;
+    if (bound_[i]->buffer() == asset.buffer()) return i;
   if (slots_ < shader::kPatchBuffers) bound_[slots_] = &asset;
   return slots_ < shader::kPatchBuffers ? slots_++ : shader::kPatchBuffers;
 }
@@ -183,8 +183,11 @@ Result<void> PatchRecorder::add(const GpgpPatchDrawInfo& info, uint32_t index, c
   const core::Resident& resident = asset.drawing ? static_cast<const core::Resident&>(*asset.drawing) : *asset.glyphSet;
   const uint32_t slot = slotOf(resident);
   if (slot == shader::kPatchBuffers)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "items[%u]: more than %u different drawings and glyph sets", index,
-                     shader::kPatchBuffers);
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                     "items[%u]: the drawings and glyph sets of a draw lie in more than %u buffers, each of at most %u "
+                     "bytes on this "
+                     "device",
+                     index, shader::kPatchBuffers, context.device.limits.maxStorageBufferRange);
   const uint32_t view = views_ * 2;
   std::memcpy(place_ + sizeof(PatchHeader) + size_t(view) * sizeof(PatchView), views, sizeof views);
   ++views_;
@@ -228,7 +231,7 @@ Result<void> PatchRecorder::add(const GpgpPatchDrawInfo& info, uint32_t index, c
                        maxGlyphs_);
     put({{g.x, g.y, g.size, 0},
          {g.color[0], g.color[1], g.color[2], g.color[3] * item.opacity},
-         glyph->patches,
+         asset.glyphSet->firstRecord() + glyph->patches,
          0,
          view,
          slot},
@@ -253,7 +256,7 @@ Result<void> PatchRecorder::finish(VkCommandBuffer commandBuffer, const GpgpPatc
   r.commandBuffer = commandBuffer;
   for (uint32_t i = 0; i < slots_; ++i) {
     r.bindings[i].ownBuffer = bound_[i]->buffer();
-    r.bindings[i].ownSize = bound_[i]->size();
+    r.bindings[i].ownSize = bound_[i]->bufferSize();
   }
   r.target = info.target;
   r.vertexCount = static_cast<uint32_t>(kQuadVertices * quads_);

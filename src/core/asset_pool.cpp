@@ -1,0 +1,52 @@
+#include "core/asset_pool.h"
+
+#include "core/device.h"
+
+#include <algorithm>
+
+namespace gpgp::core {
+namespace {
+constexpr VkDeviceSize kAlignment = 256, kLeastBlock = VkDeviceSize(1) << 20;
+} // namespace
+
+/// A new block is as large as all before it, so that there are few of them, however many assets there are.
+Result<AssetPool::Place> AssetPool::allocate(GpgpService service, VkDeviceSize size) {
+  size = (size + kAlignment - 1) / kAlignment * kAlignment;
+  const std::lock_guard lock(mutex_);
+  VkDeviceSize all = 0;
+  for (Block& block : blocks_) {
+    if (block.service != service) continue;
+    all += block.buffer.size();
+    VkDeviceSize start = 0;
+    auto at = block.used.begin();
+    for (; at != block.used.end() && start + size > at->offset; ++at) start = at->offset + at->size;
+    if (at == block.used.end() && start + size > block.buffer.size()) continue;
+    block.used.insert(at, Range{start, size});
+    return Place{block.buffer.handle(), block.buffer.size(), start, size};
+  }
+  blocks_.reserve(blocks_.size() + 1); // what can throw comes before what must be undone
+  std::pmr::vector<Range> used(blocks_.get_allocator().resource());
+  used.push_back({0, size});
+  const VkDeviceSize most = device_.limits.maxStorageBufferRange / kAlignment * kAlignment;
+  Result<Buffer> buffer = Error{};
+  for (const VkDeviceSize bytes : {std::max(size, std::min(std::max(all, kLeastBlock), most)), size}) {
+    buffer = Buffer::create(device_, memory_, service, "assets", bytes,
+                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryPlace::device);
+    if (buffer || bytes == size) break; // else there may be memory for the asset alone
+  }
+  if (!buffer) return buffer.error();
+  blocks_.push_back({std::move(*buffer), service, std::move(used)});
+  const Buffer& made = blocks_.back().buffer;
+  return Place{made.handle(), made.size(), 0, size};
+}
+
+void AssetPool::free(const Place& place) {
+  const std::lock_guard lock(mutex_);
+  const auto block =
+      std::find_if(blocks_.begin(), blocks_.end(), [&](const Block& b) { return b.buffer.handle() == place.buffer; });
+  if (block == blocks_.end()) return;
+  std::erase_if(block->used, [&](const Range& range) { return range.offset == place.offset; });
+  if (block->used.empty()) blocks_.erase(block);
+}
+
+} // namespace gpgp::core
