@@ -101,6 +101,23 @@ TEST_F(CanvasTest, AListShowsAnyNumberOfGlyphSets) {
       const uint32_t set = y / 16 * 8 + x / 16;
       ASSERT_EQ(pixels[y * 128 + x].a, x % 16 < 2 * (1 + set % 7) && y % 16 < 2 ? 1.0f : 0.0f) << x << " " << y;
     }
+  // One more than the canvas was made for.
+  const GpgpGlyphSetCreateInfo info = GPGP_GLYPH_SET_CREATE_INFO_INIT;
+  ASSERT_EQ(gpgpCreateGlyphSet(context, &info, &sets.emplace_back()), GPGP_SUCCESS);
+  list.add(sets.back(), {{GPGP_GLYPH_NONE, 0, 0, 2, {1, 1, 1, 1}}});
+  const GpgpCanvasItem item = list.item();
+  const host::Image target(device, {.format = VK_FORMAT_R16G16B16A16_SFLOAT, .width = 128, .height = 128});
+  GpgpCanvasInfo recording = GPGP_CANVAS_INFO_INIT;
+  recording.width = recording.height = 128;
+  recording.items = &item;
+  recording.itemCount = 1;
+  recording.target = target.target({}, {});
+  const GpgpFrame frame = advance();
+  device.submitAndWait([&](VkCommandBuffer commands) {
+    EXPECT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
+    EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &recording), GPGP_ERROR_UNSUPPORTED);
+  });
+  EXPECT_NE(lastMessage().find("at most 64 different drawings"), std::string::npos) << lastMessage();
   for (const GpgpAsset set : sets) gpgpDestroyAsset(set);
 }
 
