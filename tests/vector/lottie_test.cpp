@@ -1,0 +1,557 @@
+// Lottie without a device: easing, arc lengths and shapes by closed forms, layers by properties, and what is said of
+// files that are not supported, not valid or hostile.
+#include "lottie_file.h"
+#include "vector/import/lottie/evaluate.h"
+#include "vector/import/lottie/path.h"
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <random>
+#include <zlib.h>
+
+namespace {
+using namespace gpgp;
+using namespace gpgp::test;
+using namespace gpgp::vector;
+using namespace gpgp::vector::lottie;
+using Curve = std::array<Point, 4>;
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// An animation of 100 x 100 units and 60 frames.
+std::string animation(const std::string& layers, const std::string& more = "") {
+  return R"({"v":"5.7","fr":30,"ip":0,"op":60,"w":100,"h":100,)" + more + R"("layers":[)" + layers + "]}";
+}
+std::string shapeLayer(const std::string& shapes, const std::string& ks = "{}", const std::string& more = "") {
+  return R"({"ty":4,"ip":0,"op":60,"st":0,)" + more + R"("ks":)" + ks + R"(,"shapes":[)" + shapes + "]}";
+}
+const std::string kSquare = R"({"ty":"rc","p":{"k":[10,20]},"s":{"k":[20,10]},"r":{"k":0}})";
+const std::string kRed = R"({"ty":"fl","c":{"k":[1,0,0]},"o":{"k":100}})";
+
+std::vector<Point> pointsOf(const GpgpLottieFrame& frame, uint32_t path = 0) {
+  std::vector<Point> points;
+  if (path >= frame.pathCount) return points;
+  for (uint32_t i = 0; i < frame.paths[path].pointCount; ++i)
+    points.push_back({static_cast<double>(frame.paths[path].points[2 * i]),
+                      static_cast<double>(frame.paths[path].points[2 * i + 1])});
+  return points;
+}
+
+TEST(Lottie, EasingIsTheCurveOfItsControlPoints) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> at(0, 1), over(-1, 2);
+  for (int i = 0; i < 200; ++i) {
+    const Easing easing{at(random), over(random), at(random), over(random)};
+    for (int k = 1; k < 20; ++k) { // any parameter gives a point of the curve
+      const double t = k / 20.0, s = 1 - t;
+      const double x = 3 * s * s * t * easing.x1 + 3 * s * t * t * easing.x2 + t * t * t;
+      const double y = 3 * s * s * t * easing.y1 + 3 * s * t * t * easing.y2 + t * t * t;
+      const double slope = 3 * s * s * easing.x1 + 6 * s * t * (easing.x2 - easing.x1) + 3 * t * t * (1 - easing.x2);
+      if (slope > 0.05) {
+        EXPECT_NEAR(easing.at(x), y, 1e-9) << i << ' ' << k;
+      }
+    }
+    EXPECT_EQ(easing.at(0), 0);
+    EXPECT_EQ(easing.at(1), 1);
+  }
+  EXPECT_NEAR((Easing{0, 0, 1, 1}.at(0.3)), 0.3, 1e-12);
+}
+
+TEST(Lottie, LengthsAreThoseOfTheCurves) {
+  const Curve line{{{1, 2}, {2, 4}, {3, 6}, {4, 8}}};
+  EXPECT_NEAR(lengthOfCubic(line), std::hypot(3, 6), 1e-12);
+  EXPECT_NEAR(parameterAt(line, std::hypot(3, 6) / 4), 0.25, 1e-9);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> at(0, 100);
+  for (int i = 0; i < 50; ++i) {
+    Curve c;
+    for (Point& p : c) p = {at(random), at(random)};
+    double sum = 0; // of a polygon with many corners
+    Point before = c[0];
+    for (int k = 1; k <= 20'000; ++k) {
+      const Point p = pointOfCubic(c, k / 20'000.0);
+      sum += std::hypot(p.x - before.x, p.y - before.y);
+      before = p;
+    }
+    EXPECT_NEAR(lengthOfCubic(c), sum, 5e-4 * sum) << i; // a cusp is the worst
+    const double half = parameterAt(c, sum / 2);
+    EXPECT_NEAR(lengthOfCubic(c, half), sum / 2, 5e-4 * sum) << i;
+  }
+}
+
+TEST(Lottie, PolystarsHaveTheirVerticesOnTwoCircles) {
+  for (const bool polygon : {false, true})
+    for (const double n : {3.0, 5.0, 8.0}) {
+      const Star star{polygon, false, {10, 20}, n, 30, 8, 25, 0, 0};
+      const Contour contour = starOf(star);
+      const auto count = static_cast<size_t>(polygon ? n : 2 * n);
+      ASSERT_EQ(contour.vertices.size(), count);
+      for (size_t i = 0; i < count; ++i) {
+        const double angle = (-90 + 30 + 360.0 * static_cast<double>(i) / static_cast<double>(count)) * kPi / 180;
+        const double radius = polygon || i % 2 == 0 ? 25 : 8;
+        EXPECT_NEAR(contour.vertices[i].at.x, 10 + radius * std::cos(angle), 1e-9);
+        EXPECT_NEAR(contour.vertices[i].at.y, 20 + radius * std::sin(angle), 1e-9);
+      }
+    }
+  // A polygon of many round corners is a circle.
+  const Contour circle = starOf({true, false, {0, 0}, 64, 0, 0, 50, 0, 100});
+  for (size_t i = 0; i < circle.segments(); ++i)
+    for (const double t : {0.25, 0.5, 0.75}) {
+      const Point p = pointOfCubic(circle.segment(i), t);
+      EXPECT_NEAR(std::hypot(p.x, p.y), 50, 0.02);
+    }
+}
+
+TEST(Lottie, TrimsCutByLength) {
+  const Contour ellipse = ellipseOf({0, 0}, {80, 40}, false);
+  const double whole = ellipse.length();
+  for (const auto& [from, to] : std::vector<std::pair<double, double>>{{0, 0.5}, {0.5, 1}, {0.13, 0.27}, {0.9, 1.4}}) {
+    double sum = 0;
+    for (const Contour& piece : trimmedAround(ellipse, from, to)) sum += piece.length();
+    EXPECT_NEAR(sum, (to - from) * whole, 1e-6 * whole) << from << ' ' << to;
+  }
+  // Both halves together are the whole: they meet, and lie on it.
+  const Contour first = trimmed(ellipse, 0, 0.5), second = trimmed(ellipse, 0.5, 1);
+  EXPECT_EQ(first.vertices.front().at, ellipse.vertices.front().at);
+  EXPECT_NEAR(first.vertices.back().at.x, second.vertices.front().at.x, 1e-6);
+  EXPECT_NEAR(first.vertices.back().at.y, second.vertices.front().at.y, 1e-6);
+  for (const Contour* half : {&first, &second})
+    for (size_t i = 0; i < half->segments(); ++i)
+      for (const double t : {0.0, 0.3, 0.7}) {
+        const Point p = pointOfCubic(half->segment(i), t);
+        EXPECT_NEAR(std::hypot(p.x / 40, p.y / 20), 1, 1e-3);
+      }
+  EXPECT_EQ(trimmedAround(ellipse, 0.25, 1.25)[0].vertices.size(), ellipse.vertices.size())
+      << "all of it, still closed";
+}
+
+TEST(Lottie, RepeatedTransformsAreThemselvesOverAndOver) {
+  Transform t;
+  t.anchor.value = {3, 4}, t.position.value = {7, -2}, t.scale.value = {100, 100}, t.rotation.value = {20};
+  const Affine once = repeatedMatrix(t, 0, 1);
+  // With an anchor that the step moves, only the turn adds up: compare what three steps do to the anchor and to turns.
+  const Affine thrice = repeatedMatrix(t, 0, 3);
+  EXPECT_NEAR(std::atan2(thrice.b, thrice.a), 3 * std::atan2(once.b, once.a), 1e-12);
+  const Point anchor = thrice({3, 4});
+  EXPECT_NEAR(anchor.x, 3 + 21, 1e-12);
+  EXPECT_NEAR(anchor.y, 4 - 6, 1e-12);
+  EXPECT_EQ(repeatedMatrix(t, 0, 0)(Point{5, 6}), (Point{5, 6}));
+}
+
+TEST(Lottie, ParentsMultiply) {
+  // Point by point, without matrices: anchor, scale, turn, position, from the innermost outwards.
+  struct Step {
+    double px, py, ax, ay, sx, sy, r;
+  };
+  const Step steps[] = {{50, 40, 0, 0, 120, 80, 33}, {20, 5, 1, 2, 90, 110, -50}, {5, 10, 2, 2, 100, 100, 15}};
+  const auto ks = [](const Step& s) {
+    const auto pair = [](double a, double b) {
+      return "{\"k\":[" + std::to_string(a) + "," + std::to_string(b) + "]}";
+    };
+    return "{\"p\":" + pair(s.px, s.py) + ",\"a\":" + pair(s.ax, s.ay) + ",\"s\":" + pair(s.sx, s.sy) +
+           ",\"r\":{\"k\":" + std::to_string(s.r) + "}}";
+  };
+  const std::string text = animation(R"({"ty":3,"ind":1,"ip":0,"op":60,"ks":)" + ks(steps[0]) +
+                                     R"(},{"ty":3,"ind":2,"parent":1,"ip":50,"op":60,"ks":)" + ks(steps[1]) + "}," +
+                                     shapeLayer(kSquare + "," + kRed, ks(steps[2]), R"("ind":3,"parent":2,)"));
+  LottieFile file(text);
+  const std::vector<Point> got = pointsOf(file.at(0));
+  ASSERT_EQ(got.size(), 4u);
+  const Point corners[] = {{20, 15}, {20, 25}, {0, 25}, {0, 15}};
+  for (size_t i = 0; i < 4; ++i) {
+    Point p = corners[i];
+    for (size_t k = 3; k-- > 0;) {
+      const Step& s = steps[k];
+      const double x = (p.x - s.ax) * s.sx / 100, y = (p.y - s.ay) * s.sy / 100, r = s.r * kPi / 180;
+      p = {s.px + x * std::cos(r) - y * std::sin(r), s.py + x * std::sin(r) + y * std::cos(r)};
+    }
+    EXPECT_NEAR(got[i].x, p.x, 1e-4) << i;
+    EXPECT_NEAR(got[i].y, p.y, 1e-4) << i;
+  }
+}
+
+TEST(Lottie, SkewShearsAlongItsAxis) {
+  Transform t;
+  t.skew.value = {30};
+  const double shear = std::tan(30 * kPi / 180);
+  const Affine along = matrixOf(t, 0); // horizontal: x moves with y
+  EXPECT_NEAR(along({0, 1}).x, -shear, 1e-12);
+  EXPECT_NEAR(along({0, 1}).y, 1, 1e-12);
+  t.skewAxis.value = {90};
+  const Affine across = matrixOf(t, 0); // y moves with x
+  EXPECT_NEAR(across({1, 0}).x, 1, 1e-12);
+  EXPECT_NEAR(std::fabs(across({1, 0}).y), shear, 1e-12);
+}
+
+TEST(Lottie, HoldsAreStillPictures) {
+  const std::string held =
+      R"({"p":{"a":1,"k":[{"t":0,"s":[10,10],"h":1},{"t":20,"s":[40,30],"h":1}]},"r":{"a":1,"k":[{"t":0,"s":[0],"h":1},{"t":20,"s":[45],"h":1}]}})";
+  const std::string text = animation(shapeLayer(kSquare + "," + kRed, held));
+  LottieFile moving(text);
+  const std::string before = animation(shapeLayer(kSquare + "," + kRed, R"({"p":{"k":[10,10]}})")),
+                    behind = animation(shapeLayer(kSquare + "," + kRed, R"({"p":{"k":[40,30]},"r":{"k":45}})"));
+  LottieFile first(before), second(behind);
+  const uint64_t early = moving.at(3).content;
+  EXPECT_EQ(early, first.at(0).content);
+  EXPECT_EQ(moving.at(19.9).content, early);
+  EXPECT_NE(moving.at(20).content, early);
+  EXPECT_EQ(moving.at(20).content, second.at(59).content);
+  EXPECT_EQ(moving.at(1e9).content, second.at(59).content) << "the last moment stays";
+  EXPECT_EQ(moving.at(-5).content, early);
+}
+
+TEST(Lottie, PositionsMoveEvenlyAlongTheirCurve) {
+  Property position;
+  Keyframe a, b;
+  a.start = {0, 0}, a.curved = true, a.by = {Point{0, 60}, Point{-90, 0}};
+  b.time = 10, b.start = {100, 0};
+  position.keys = {a, b};
+  const Curve c{{{0, 0}, {0, 60}, {10, 0}, {100, 0}}};
+  const double whole = lengthOfCubic(c);
+  for (int k = 1; k < 10; ++k) {
+    const Point p = position.point(k), want = pointOfCubic(c, parameterAt(c, whole * k / 10));
+    EXPECT_NEAR(p.x, want.x, 1e-6);
+    EXPECT_NEAR(p.y, want.y, 1e-6);
+  }
+  EXPECT_NEAR(position.direction(0.01), kPi / 2, 0.05) << "it starts downwards";
+  EXPECT_NEAR(position.direction(9.99), 0, 0.05);
+}
+
+TEST(Lottie, TrimmedHalvesCoverTheWhole) {
+  const auto text = [](double from, double to) {
+    return animation(shapeLayer(
+        kSquare + R"(,{"ty":"tm","m":1,"s":{"k":)" + std::to_string(from) + R"(},"e":{"k":)" + std::to_string(to) +
+        R"(},"o":{"k":0}},{"ty":"st","c":{"k":[0,0,1]},"o":{"k":100},"w":{"k":2},"lc":1,"lj":1})"));
+  };
+  const auto area = [](const GpgpLottieFrame& frame) { // of outlines that do not overlap themselves
+    double sum = 0;
+    for (uint32_t i = 0; i < frame.pathCount; ++i) {
+      const std::vector<Point> p = pointsOf(frame, i);
+      for (size_t k = 0; k < p.size(); ++k) {
+        const Point a = p[k], b = p[(k + 1) % p.size()];
+        sum += (a.x * b.y - b.x * a.y) / 2;
+      }
+    }
+    return std::fabs(sum);
+  };
+  const std::string a = text(0, 50), b = text(50, 100), none = text(30, 30);
+  LottieFile first(a), second(b), empty(none);
+  EXPECT_GT(area(first.at(0)), 50);
+  EXPECT_EQ(empty.at(0).pathCount, 0u);
+  // A rectangle's way is 60 long: half of it, 2 wide, turns two corners, whose outlines overlap by little.
+  EXPECT_NEAR(area(first.at(0)), 60, 4);
+  EXPECT_NEAR(area(second.at(0)), 60, 4);
+}
+
+TEST(Lottie, LayersShowBetweenInAndOut) {
+  const std::string text = animation(R"({"ty":1,"sw":10,"sh":10,"sc":"#ff0000","ip":10,"op":20,"st":0,"ks":{}})");
+  LottieFile file(text);
+  EXPECT_EQ(file.at(9.99).pathCount, 0u);
+  EXPECT_EQ(file.at(10).pathCount, 1u);
+  EXPECT_EQ(file.at(19.99).pathCount, 1u);
+  EXPECT_EQ(file.at(20).pathCount, 0u);
+  const GpgpLottieFrame shown = file.at(15);
+  EXPECT_NEAR(shown.paths[0].color[0], 1, 1e-6);
+}
+
+TEST(Lottie, InfoIsWhatTheFileSays) {
+  const std::string text = animation(shapeLayer(kSquare));
+  LottieFile file(text);
+  const auto info = file.lottie.info();
+  ASSERT_TRUE(info);
+  EXPECT_EQ(info->width, 100);
+  EXPECT_EQ(info->frameRate, 30);
+  EXPECT_EQ(info->endFrame, 60);
+  EXPECT_EQ(info->layers, 1u);
+  EXPECT_TRUE(file.messages.empty());
+}
+
+TEST(Lottie, WhatIsNotSupportedIsNamedOnceWithItsPlace) {
+  const std::string text =
+      animation(shapeLayer(kSquare + R"(,{"ty":"fl","c":{"k":[1,0,0]},"o":{"k":100,"x":"wiggle"
+}
+},{"ty":"op","a":{"k":3}})",
+                           R"({"r":{"k":0,"x":"time*3"}})") +
+                R"(,{"ty":13,"ks":{}},{"ty":4,"ddd":1,"bm":17,"ks":{},"shapes":[{"ty":"mm","mm":4}],"ef":[{"ty":22,"nm":"Wave"}],"masksProperties":[{"mode":"f"}]})");
+LottieFile file(text);
+ASSERT_EQ(file.result, GPGP_SUCCESS);
+const auto count = [&](std::string_view part) {
+  return std::count_if(file.messages.begin(), file.messages.end(),
+                       [&](const std::string& m) { return m.find(part) != m.npos; });
+};
+EXPECT_EQ(count("expressions"), 1);
+EXPECT_EQ(count("test.json: layers[0].ks.r: expressions"), 1) << file.messages[0];
+EXPECT_EQ(count("test.json: layers[0].shapes[2]: offset paths"), 1);
+EXPECT_EQ(count("layers[1]: cameras"), 1);
+EXPECT_EQ(count("layers[2]: layers in three dimensions"), 1);
+EXPECT_EQ(count("layers[2]: blend mode 17"), 1);
+EXPECT_EQ(count("layers[2].shapes[0]: merge paths: intersect"), 1);
+EXPECT_EQ(count("layers[2].ef[0]: effect 22 ('Wave')"), 1);
+EXPECT_EQ(count("layers[2].masksProperties[0]: the mask mode 'f'"), 1);
+EXPECT_EQ(file.at(0).pathCount, 1u) << "the rest is drawn";
+}
+
+TEST(Lottie, ErrorsHaveTheirPlace) {
+  const auto firstMessage = [](const std::string& text) {
+    LottieFile file(text);
+    EXPECT_EQ(file.result, GPGP_ERROR_INVALID_DATA) << text.substr(0, 60);
+    EXPECT_EQ(file.lottie.get(), nullptr);
+    return file.messages.empty() ? std::string() : file.messages[0];
+  };
+  EXPECT_EQ(firstMessage("{\n \"w\": 3,\n x}"), "test.json:3:2: not JSON");
+  EXPECT_EQ(firstMessage("[1,2]"), "test.json: no Lottie animation: it has no layers");
+  EXPECT_EQ(firstMessage(R"({"layers":[],"w":0})"), "test.json: w: the width must be above 0 and at most 1e6");
+  EXPECT_EQ(firstMessage(R"({"layers":[],"w":9,"h":9,"fr":30,"ip":5,"op":5})"),
+            "test.json: op: the animation must end after it begins");
+  EXPECT_NE(firstMessage("").find("not JSON"), std::string::npos);
+}
+
+TEST(Lottie, TheApiChecksItsArguments) {
+  GpgpLottie handle = nullptr;
+  GpgpLottieSource source = GPGP_LOTTIE_SOURCE_INIT;
+  EXPECT_EQ(gpgpCreateLottie(nullptr, &handle), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gpgpCreateLottie(&source, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
+  source.size = 3;
+  EXPECT_EQ(gpgpCreateLottie(&source, &handle), GPGP_ERROR_INVALID_ARGUMENT);
+  source.sType = GPGP_STRUCTURE_SVG_SOURCE;
+  EXPECT_EQ(gpgpCreateLottie(&source, &handle), GPGP_ERROR_INVALID_STRUCT);
+  gpgpDestroyLottie(nullptr);
+  GpgpLottieFrame frame = GPGP_LOTTIE_FRAME_INIT;
+  EXPECT_EQ(gpgpEvaluateLottie(nullptr, 0, &frame), GPGP_ERROR_INVALID_HANDLE);
+  const std::string text = animation(shapeLayer(kSquare + "," + kRed));
+  LottieFile file(text);
+  EXPECT_EQ(gpgpEvaluateLottie(file.lottie, std::nan(""), &frame), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gpgpEvaluateLottie(file.lottie, 0, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gpgpCompileLottieFrame(file.lottie, 0, nullptr, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
+  const auto blob = file.lottie.compile(0);
+  ASSERT_TRUE(blob);
+  EXPECT_GT(blob->size(), 100u);
+}
+
+/// A zip archive of one file after another; those that end in "*" are deflated.
+std::string zipOf(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::string zip, directory;
+  const auto put = [](std::string& to, uint32_t value, int bytes) {
+    for (int i = 0; i < bytes; ++i) to += static_cast<char>(value >> (8 * i) & 255);
+  };
+  for (auto [name, data] : files) {
+    const bool packed = name.back() == '*';
+    if (packed) name.pop_back();
+    const auto sum =
+        static_cast<uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(data.data()), static_cast<uInt>(data.size())));
+    std::string bytes = data;
+    if (packed) {
+      z_stream stream{};
+      deflateInit2(&stream, 9, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY);
+      bytes.resize(data.size() + 100);
+      stream.next_in = reinterpret_cast<Bytef*>(data.data()), stream.avail_in = static_cast<uInt>(data.size());
+      stream.next_out = reinterpret_cast<Bytef*>(bytes.data()), stream.avail_out = static_cast<uInt>(bytes.size());
+      deflate(&stream, Z_FINISH);
+      bytes.resize(stream.total_out);
+      deflateEnd(&stream);
+    }
+    const auto fields = [&](std::string& to) {
+      put(to, 20, 2), put(to, 0, 2), put(to, packed ? 8 : 0, 2), put(to, 0, 4), put(to, sum, 4);
+      put(to, static_cast<uint32_t>(bytes.size()), 4), put(to, static_cast<uint32_t>(data.size()), 4);
+      put(to, static_cast<uint32_t>(name.size()), 2), put(to, 0, 2);
+    };
+    const auto offset = static_cast<uint32_t>(zip.size());
+    put(directory, 0x02014b50, 4), put(directory, 20, 2), fields(directory);
+    put(directory, 0, 2), put(directory, 0, 2), put(directory, 0, 2), put(directory, 0, 4), put(directory, offset, 4);
+    directory += name;
+    put(zip, 0x04034b50, 4), fields(zip);
+    zip += name + bytes;
+  }
+  const auto begin = static_cast<uint32_t>(zip.size());
+  zip += directory;
+  put(zip, 0x06054b50, 4), put(zip, 0, 4), put(zip, static_cast<uint32_t>(files.size()), 2),
+      put(zip, static_cast<uint32_t>(files.size()), 2), put(zip, static_cast<uint32_t>(directory.size()), 4),
+      put(zip, begin, 4), put(zip, 0, 2);
+  return zip;
+}
+
+TEST(Lottie, ArchivesHoldAnimationsAndImages) {
+  const std::string json =
+      animation(shapeLayer(kSquare + "," + kRed) + R"(,{"ty":2,"refId":"i","ip":0,"op":60,"ks":{}})",
+                R"("assets":[{"id":"i","w":8,"h":4,"u":"/images/","p":"a.png","e":0}],)");
+  LottieFile plain(json);
+  ASSERT_EQ(plain.result, GPGP_SUCCESS);
+  EXPECT_TRUE(plain.said("images are not supported here"));
+  for (const bool second : {false, true}) {
+    const std::string zip = zipOf({{"manifest.json", R"({"animations":[{"id":"own"}]})"},
+                                   {second ? "a/other.json" : "animations/other.json", "{}"},
+                                   {second ? "a/own.json*" : "animations/own.json*", json},
+                                   {second ? "i/a.png*" : "images/a.png", "picture"}});
+    std::string given;
+    GpgpLottieSource source = GPGP_LOTTIE_SOURCE_INIT;
+    source.imageUserData = &given;
+    source.imageFn = [](void* user, uint32_t index, const void* data, size_t size, uint32_t* width,
+                        uint32_t* height) -> VkBool32 {
+      EXPECT_EQ(index, 0u);
+      static_cast<std::string*>(user)->assign(static_cast<const char*>(data), size);
+      *width = 2, *height = 2;
+      return VK_TRUE;
+    };
+    LottieFile file(zip, source);
+    ASSERT_EQ(file.result, GPGP_SUCCESS) << (file.messages.empty() ? "" : file.messages[0]);
+    EXPECT_EQ(given, "picture");
+    const GpgpLottieFrame frame = file.at(0);
+    ASSERT_EQ(frame.pathCount, 2u);
+    ASSERT_NE(frame.paths[0].image, nullptr) << "below the shape";
+    EXPECT_EQ(frame.paths[0].image->transform[0], 8) << "as large as the file says";
+    for (size_t cut = 1; cut < zip.size(); cut += 7) { // damaged, it is refused
+      const std::string part = zip.substr(0, cut);
+      LottieFile damaged(part);
+      EXPECT_EQ(damaged.result, GPGP_ERROR_INVALID_DATA) << cut;
+    }
+  }
+  const std::string none = zipOf({{"readme.txt", "hello"}});
+  EXPECT_TRUE(LottieFile(none).said("the archive holds no animation"));
+}
+
+std::string repeated(const std::string& part, size_t count) {
+  std::string all;
+  for (size_t i = 0; i < count; ++i) all += part;
+  return all;
+}
+
+/// Files that ask for more than there is, and what is said of each.
+TEST(Lottie, HostileFilesEndWithinTheirLimits) {
+  const std::string inner = R"({"ty":0,"refId":"a","ip":0,"op":60,"w":100,"h":100,"ks":{}})";
+  const std::string stroke = R"(,{"ty":"st","c":{"k":[0,0,1]},"o":{"k":100},"w":{"k":2},"lc":2,"lj":2)";
+  const std::string zeroes = "[" + repeated("[0,0],", 70'000) + "[0,0]]";
+  struct Case {
+    const char* name;
+    std::string text;
+    const char* said; ///< empty: nothing needs to be
+  };
+  std::vector<Case> cases;
+  const auto add = [&](const char* name, std::string text, const char* said) {
+    cases.push_back({name, std::move(text), said});
+  };
+  const auto shapes = [&](const std::string& list, const std::string& ks = "{}") {
+    return animation(shapeLayer(list, ks));
+  };
+  add("deep lists", repeated("[", 100'000), "more than 128 deep");
+  add("deep objects", repeated("{\"a\":", 100'000), "more than 128 deep");
+  add("a number beyond doubles", R"({"w":1e999})", "too large");
+  add("no UTF-8", "{\"layers\":[{\"ty\":4,\"nm\":\"\xff\xfe\"}]}", "not JSON");
+  add("a composition in itself", animation(inner, R"("assets":[{"id":"a","layers":[)" + inner + "]}],"),
+      "more than 64 deep");
+  add("compositions that double",
+      animation(inner, R"("assets":[{"id":"a","layers":[)" + inner + "," + inner + "," +
+                           shapeLayer(kSquare + "," + kRed) + "]}],"),
+      "65 536 layers");
+  add("its own parent", animation(shapeLayer(kSquare + "," + kRed, "{}", R"("ind":1,"parent":1,)")),
+      "their own parents");
+  add("parents in a ring",
+      animation(R"({"ty":3,"ind":1,"parent":2,"ks":{}},{"ty":3,"ind":2,"parent":1,"ks":{}},)" +
+                shapeLayer(kSquare + "," + kRed, "{}", R"("ind":3,"parent":1,)")),
+      "their own parents");
+  add("mattes in a ring",
+      animation(shapeLayer(kSquare + "," + kRed, "{}", R"("ind":1,"tt":1,"tp":2,)") + "," +
+                shapeLayer(kSquare + "," + kRed, "{}", R"("ind":2,"tt":1,"tp":1,)")),
+      "more than 28 effects");
+  add("a matte of nobody", animation(shapeLayer(kSquare + "," + kRed, "{}", R"("ind":1,"tt":1,)")),
+      "a matte is not there");
+  add("a million copies",
+      shapes(kSquare + "," + kRed + R"(,{"ty":"rp","c":{"k":1e6},"o":{"k":0},"tr":{"p":{"k":[0.001,0]}}})"), "");
+  add("copies of copies of copies",
+      shapes(kSquare + "," + kRed + repeated(R"(,{"ty":"rp","c":{"k":1000},"o":{"k":0},"tr":{}})", 3)),
+      "4 000 000 points");
+  add("a path of many vertices",
+      shapes(R"({"ty":"sh","ks":{"k":{"v":)" + zeroes + R"(,"i":[],"o":[],"c":true}}},)" + kRed),
+      "more than 65536 vertices");
+  add("a star of many points",
+      shapes(R"({"ty":"sr","sy":1,"pt":{"k":1e9},"p":{"k":[50,50]},"or":{"k":40},"ir":{"k":9}},)" + kRed), "");
+  add("zigzags on zigzags",
+      shapes(kSquare + repeated(R"(,{"ty":"zz","s":{"k":3},"r":{"k":1000},"pt":{"k":1}})", 4) + "," + kRed),
+      "4 000 000 points");
+  add("dashes without end", shapes(kSquare + stroke + R"(,"d":[{"n":"d","v":{"k":1e-5}}]})"),
+      "more dashes than are drawn");
+  add("dashes of nothing", shapes(kSquare + stroke + R"(,"d":[{"n":"d","v":{"k":0}},{"n":"g","v":{"k":-3}}]})"), "");
+  add("a stroke as wide as the world",
+      shapes(kSquare + R"(,{"ty":"st","c":{"k":[0,0,1]},"o":{"k":100},"w":{"k":1e9}})"), "");
+  add("no size at all", shapes(kSquare + "," + kRed, R"({"s":{"k":[0,0]}})"), "");
+  add("a size beyond floats", shapes(kSquare + "," + kRed, R"({"s":{"k":[1e9,1e9]},"p":{"k":[1e9,1e9]}})"),
+      "beyond 1e7");
+  add("groups in groups", shapes(repeated(R"({"ty":"gr","it":[)", 40) + kSquare + repeated("]}", 40)), "");
+  add("too many groups in groups", shapes(repeated(R"({"ty":"gr","it":[)", 61) + kSquare + repeated("]}", 61)),
+      "more than 128 deep");
+  add("fading groups in groups",
+      shapes(repeated(R"({"ty":"gr","it":[)", 40) + kSquare + "," + kRed + "," + kRed +
+             repeated(R"(,{"ty":"tr","o":{"k":90}}]})", 40)),
+      "");
+  add("masks in masks",
+      animation(R"({"ty":1,"sw":100,"sh":100,"sc":"#fff000","ip":0,"op":60,"ks":{},"masksProperties":[)" +
+                repeated(R"({"mode":"s","pt":{"k":{"v":[[0,0],[9,0],[9,9]],"c":true}}},)", 70) + R"({"mode":"n"}]})"),
+      "more than 28 effects");
+  add("a mask without vertices",
+      animation(
+          R"({"ty":1,"sw":9,"sh":9,"sc":"red","ip":0,"op":60,"ks":{},"masksProperties":[{"mode":"a","pt":{"k":{}}}]})"),
+      "#rrggbb");
+  add("a gradient without stops",
+      shapes(kSquare + R"(,{"ty":"gf","t":1,"g":{"p":0,"k":{"k":[]}},"s":{"k":[0,0]},"e":{"k":[9,9]}})"), "");
+  add("a gradient of fewer stops than it says",
+      shapes(kSquare + R"(,{"ty":"gf","t":2,"g":{"p":900,"k":{"k":[0,1,0,0,1,0]}},"s":{"k":[5,5]},"e":{"k":[5,5]}})"),
+      "");
+  add("keyframes out of order",
+      shapes(kSquare + "," + kRed, R"({"r":{"a":1,"k":[{"t":50,"s":[9]},{"t":0,"s":[1]},{"t":0,"s":[]}]}})"), "sorted");
+  add("keyframes of different sizes",
+      shapes(
+          R"({"ty":"sh","ks":{"a":1,"k":[{"t":0,"s":[{"v":[[0,0],[9,9]],"c":true}]},{"t":59,"s":[{"v":[[0,0]],"c":true}]}]}},)" +
+          kRed),
+      "");
+  add("values of other kinds",
+      animation(
+          R"({"ty":"4","ks":[],"shapes":{"a":1}},7,null,"x",{"ty":4,"ks":{"p":"x","s":{"k":{}}},"shapes":[3,{"ty":5},{"ty":"fl","c":{"k":"red"}}]})"),
+      "");
+  add("time that divides by nothing",
+      animation(R"({"ty":0,"refId":"a","sr":0,"ip":0,"op":60,"ks":{}})", R"("assets":[{"id":"a","layers":[]}],)"), "");
+  add("a remap beyond all frames",
+      animation(R"({"ty":0,"refId":"a","tm":{"k":1e9},"ip":0,"op":60,"w":9,"h":9,"ks":{}})",
+                R"("assets":[{"id":"a","layers":[)" + shapeLayer(kSquare) + "]}],"),
+      "");
+  add("an image outside of the folder",
+      animation(R"({"ty":2,"refId":"i","ip":0,"op":60,"ks":{}})",
+                R"("assets":[{"id":"i","w":8,"h":4,"u":"../","p":"a.png"}],)"),
+      "lies outside");
+  add("a text without end",
+      animation(R"({"ty":5,"ip":0,"op":60,"ks":{},"t":{"d":{"k":[{"t":0,"s":{"t":")" + std::string(20'000, 'x') +
+                R"(","f":"F","s":9}}]}}})"),
+      "more than 10 000 bytes");
+  add("effects without numbers",
+      animation(shapeLayer(kSquare + "," + kRed, "{}",
+                           R"("ef":[{"ty":25},{"ty":29,"ef":[{"v":{"k":1e9}}]},{"ty":20,"ef":7},{"ty":21}],)")),
+      "");
+  ASSERT_GE(cases.size(), 30u);
+  GpgpLottieSource source = GPGP_LOTTIE_SOURCE_INIT;
+  const GpgpFileSystem files{nullptr, [](void*, const char* path, void*, size_t, size_t*) -> GpgpResult {
+                               ADD_FAILURE() << "asked for " << path;
+                               return GPGP_ERROR_IO;
+                             }};
+  source.fileSystem = &files;
+  source.imageFn = [](void*, uint32_t, const void*, size_t, uint32_t*, uint32_t*) -> VkBool32 { return VK_FALSE; };
+  for (const Case& hostile : cases) {
+    SCOPED_TRACE(hostile.name);
+    LottieFile file(hostile.text, source);
+    if (file.result == GPGP_SUCCESS)
+      for (const double frame : {0.0, 30.5, 59.0}) {
+        const GpgpLottieFrame shown = file.at(frame);
+        EXPECT_LE(shown.pathCount, 100'000u);
+        for (uint32_t i = 0; i < shown.pathCount; ++i)
+          for (uint32_t k = 0; k < 2 * shown.paths[i].pointCount; ++k)
+            ASSERT_LE(std::fabs(shown.paths[i].points[k]), 1e7f);
+      }
+    else
+      EXPECT_EQ(file.result, GPGP_ERROR_INVALID_DATA);
+    if (*hostile.said) {
+      EXPECT_TRUE(file.said(hostile.said)) << (file.messages.empty() ? "nothing was said" : file.messages[0]);
+    } else {
+      EXPECT_EQ(file.result, GPGP_SUCCESS) << (file.messages.empty() ? "" : file.messages[0]);
+    }
+  }
+}
+
+} // namespace
