@@ -244,6 +244,107 @@ TEST(Lottie, TrimmedHalvesCoverTheWhole) {
   EXPECT_NEAR(area(second.at(0)), 60, 4);
 }
 
+/// Trims one after another take their lengths from all paths in their order.
+TEST(Lottie, SequentialTrimsRunFromPathToPath) {
+  const auto line = [](double y) {
+    return R"({"ty":"sh","ks":{"k":{"v":[[0,)" + std::to_string(y) + "],[30," + std::to_string(y) +
+           R"(]],"c":false}}},)";
+  };
+  const auto text = [&](double from, double to) { // lines of 30, each 2 wide
+    return animation(
+        shapeLayer(line(10) + line(20) + line(30) + R"({"ty":"tm","m":2,"s":{"k":)" + std::to_string(from) +
+                   R"(},"e":{"k":)" + std::to_string(to) +
+                   R"(},"o":{"k":0}},{"ty":"st","c":{"k":[0,0,1]},"o":{"k":100},"w":{"k":2},"lc":1,"lj":1})"));
+  };
+  const auto spans = [&](double from, double to) { // left and right of what is left of each line
+    const std::string json = text(from, to);
+    LottieFile file(json);
+    std::vector<std::array<double, 2>> found(3, {1e9, -1e9});
+    for (const Point& p : pointsOf(file.at(0))) {
+      std::array<double, 2>& of = found[static_cast<size_t>(std::lround(p.y / 10)) - 1];
+      of = {std::min(of[0], p.x), std::max(of[1], p.x)};
+    }
+    return found;
+  };
+  const auto middle = spans(50, 90); // 45 to 81 of 90
+  EXPECT_GT(middle[0][0], 1e8) << "nothing of the first";
+  EXPECT_NEAR(middle[1][0], 15, 0.01);
+  EXPECT_NEAR(middle[1][1], 30, 0.01);
+  EXPECT_NEAR(middle[2][0], 0, 0.01);
+  EXPECT_NEAR(middle[2][1], 21, 0.01);
+}
+
+TEST(Lottie, CompositionsHaveTheirOwnTime) {
+  const std::string moving =
+      shapeLayer(kSquare + "," + kRed,
+                 R"({"p":{"a":1,"k":[{"t":0,"s":[0,0],"i":{"x":1,"y":1},"o":{"x":0,"y":0}},{"t":60,"s":[60,0]}]}})");
+  const auto text = [&](const std::string& more) {
+    return animation(R"({"ty":0,"refId":"a","ip":0,"op":60,"w":100,"h":100,"ks":{},)" + more + R"("nm":""})",
+                     R"("assets":[{"id":"a","layers":[)" + moving + "]}],");
+  };
+  const std::string
+      plain = text(""),
+      stretched = text(R"("st":6,"sr":2,)"),
+      remapped = text(R"("tm":{"a":1,"k":[{"t":0,"s":[0],"i":{"x":1,"y":1},"o":{"x":0,"y":0}},{"t":30,"s":[1.5]}]},)");
+  LottieFile own(plain), slow(stretched), fast(remapped);
+  const auto left = [](LottieFile& file, double frame) {
+    const std::vector<Point> points = pointsOf(file.at(frame));
+    return points.empty() ? -1 : points[2].x;
+  };
+  EXPECT_NEAR(left(own, 20), 20, 1e-4);
+  EXPECT_NEAR(left(slow, 46), 20, 1e-4) << "(46 - 6) / 2";
+  EXPECT_NEAR(left(slow, 45), 19.5, 1e-4);
+  EXPECT_NEAR(left(fast, 20), 30, 1e-4) << "a second at 30 frames a second";
+  EXPECT_NEAR(left(fast, 59), 45, 1e-4) << "it stays";
+}
+
+TEST(Lottie, RepeatersStackAsTheyAreTold) {
+  const auto text = [](const std::string& mode) {
+    return animation(shapeLayer(kSquare + "," + kRed + R"(,{"ty":"rp","c":{"k":3},"o":{"k":0},"m":)" + mode +
+                                R"(,"tr":{"p":{"k":[5,0]},"so":{"k":100},"eo":{"k":40}}})"));
+  };
+  for (const bool lastOnTop : {false, true}) {
+    const std::string json = text(lastOnTop ? "2" : "1");
+    LottieFile file(json);
+    const GpgpLottieFrame frame = file.at(0);
+    ASSERT_EQ(frame.pathCount, 3u);
+    for (uint32_t i = 0; i < 3; ++i) { // from the bottom up
+      const double copy = lastOnTop ? i : 2 - i;
+      EXPECT_NEAR(pointsOf(frame, i)[2].x, 5 * copy, 1e-4);
+      EXPECT_NEAR(frame.paths[i].color[3], 1 - 0.3 * copy, 1e-6);
+    }
+  }
+}
+
+TEST(Lottie, GlyphsAdvanceByWidthAndTracking) {
+  const auto text = [](int justify) {
+    return animation(
+        R"({"ty":5,"ip":0,"op":60,"ks":{},"t":{"d":{"k":[{"t":0,"s":{"s":20,"f":"Own","t":"AA A\rA","j":)" +
+            std::to_string(justify) + R"(,"tr":100,"lh":30,"fc":[0,0,0]}}]},"a":[]}})",
+        R"("fonts":{"list":[{"fName":"Own","fFamily":"Own","fStyle":"Regular"}]},"chars":[
+{"ch":"A","size":100,"style":"Regular","fFamily":"Own","w":60,"data":{"shapes":[{"ty":"sh","ks":{"k":{"v":[[0,0],[50,0],[0,-70]],"c":true}}}]}},
+{"ch":" ","size":100,"style":"Regular","fFamily":"Own","w":25,"data":{}}],)");
+  };
+  // Each A takes 12, the blank 5, and tracking adds 2 behind each: the third begins at 2 * 14 + 7.
+  for (int justify = 0; justify < 3; ++justify) {
+    const std::string json = text(justify);
+    LottieFile file(json);
+    EXPECT_TRUE(file.messages.empty()) << file.messages[0];
+    const GpgpLottieFrame frame = file.at(0);
+    ASSERT_EQ(frame.pathCount, 2u) << "a path for each line";
+    const double width = 2 * 14 + 7 + 12, left = justify == 1 ? -width : justify == 2 ? -width / 2 : 0;
+    const std::vector<Point> first = pointsOf(frame, 0), second = pointsOf(frame, 1);
+    ASSERT_EQ(first.size(), 9u);
+    for (size_t i = 0; i < 3; ++i) {
+      const double begin = left + (i == 0 ? 0 : i == 1 ? 14 : 35);
+      EXPECT_NEAR(first[3 * i].x, begin, 1e-4);
+      EXPECT_NEAR(first[3 * i + 2].y, -14, 1e-4) << "a fifth of 70";
+    }
+    EXPECT_NEAR(second[0].x, justify == 1 ? -12 : justify == 2 ? -6 : 0, 1e-4);
+    EXPECT_NEAR(second[0].y, 30, 1e-4);
+  }
+}
+
 TEST(Lottie, LayersShowBetweenInAndOut) {
   const std::string text = animation(R"({"ty":1,"sw":10,"sh":10,"sc":"#ff0000","ip":10,"op":20,"st":0,"ks":{}})");
   LottieFile file(text);
@@ -268,28 +369,28 @@ TEST(Lottie, InfoIsWhatTheFileSays) {
 }
 
 TEST(Lottie, WhatIsNotSupportedIsNamedOnceWithItsPlace) {
-  const std::string text =
-      animation(shapeLayer(kSquare + R"(,{"ty":"fl","c":{"k":[1,0,0]},"o":{"k":100,"x":"wiggle"
+  const std::string text = animation(
+      shapeLayer(kSquare + R"(,{"ty":"fl","c":{"k":[1,0,0]},"o":{"k":100,"x":"wiggle"
 }
 },{"ty":"op","a":{"k":3}})",
-                           R"({"r":{"k":0,"x":"time*3"}})") +
-                R"(,{"ty":13,"ks":{}},{"ty":4,"ddd":1,"bm":17,"ks":{},"shapes":[{"ty":"mm","mm":4}],"ef":[{"ty":22,"nm":"Wave"}],"masksProperties":[{"mode":"f"}]})");
-LottieFile file(text);
-ASSERT_EQ(file.result, GPGP_SUCCESS);
-const auto count = [&](std::string_view part) {
-  return std::count_if(file.messages.begin(), file.messages.end(),
-                       [&](const std::string& m) { return m.find(part) != m.npos; });
-};
-EXPECT_EQ(count("expressions"), 1);
-EXPECT_EQ(count("test.json: layers[0].ks.r: expressions"), 1) << file.messages[0];
-EXPECT_EQ(count("test.json: layers[0].shapes[2]: offset paths"), 1);
-EXPECT_EQ(count("layers[1]: cameras"), 1);
-EXPECT_EQ(count("layers[2]: layers in three dimensions"), 1);
-EXPECT_EQ(count("layers[2]: blend mode 17"), 1);
-EXPECT_EQ(count("layers[2].shapes[0]: merge paths: intersect"), 1);
-EXPECT_EQ(count("layers[2].ef[0]: effect 22 ('Wave')"), 1);
-EXPECT_EQ(count("layers[2].masksProperties[0]: the mask mode 'f'"), 1);
-EXPECT_EQ(file.at(0).pathCount, 1u) << "the rest is drawn";
+                 R"({"r":{"k":0,"x":"time*3"}})") +
+      R"(,{"ty":13,"ks":{}},{"ty":4,"ddd":1,"bm":17,"ks":{},"shapes":[{"ty":"mm","mm":4}],"ef":[{"ty":22,"nm":"Wave"}],"masksProperties":[{"mode":"f"}]})");
+  LottieFile file(text);
+  ASSERT_EQ(file.result, GPGP_SUCCESS);
+  const auto count = [&](std::string_view part) {
+    return std::count_if(file.messages.begin(), file.messages.end(),
+                         [&](const std::string& m) { return m.find(part) != m.npos; });
+  };
+  EXPECT_EQ(count("expressions"), 1);
+  EXPECT_EQ(count("test.json: layers[0].ks.r: expressions"), 1) << file.messages[0];
+  EXPECT_EQ(count("test.json: layers[0].shapes[2]: offset paths"), 1);
+  EXPECT_EQ(count("layers[1]: cameras"), 1);
+  EXPECT_EQ(count("layers[2]: layers in three dimensions"), 1);
+  EXPECT_EQ(count("layers[2]: blend mode 17"), 1);
+  EXPECT_EQ(count("layers[2].shapes[0]: merge paths: intersect"), 1);
+  EXPECT_EQ(count("layers[2].ef[0]: effect 22 ('Wave')"), 1);
+  EXPECT_EQ(count("layers[2].masksProperties[0]: the mask mode 'f'"), 1);
+  EXPECT_EQ(file.at(0).pathCount, 1u) << "the rest is drawn";
 }
 
 TEST(Lottie, ErrorsHaveTheirPlace) {
@@ -335,7 +436,8 @@ std::string zipOf(const std::vector<std::pair<std::string, std::string>>& files)
   const auto put = [](std::string& to, uint32_t value, int bytes) {
     for (int i = 0; i < bytes; ++i) to += static_cast<char>(value >> (8 * i) & 255);
   };
-  for (auto [name, data] : files) {
+  for (const auto& file : files) {
+    std::string name = file.first, data = file.second;
     const bool packed = name.back() == '*';
     if (packed) name.pop_back();
     const auto sum =

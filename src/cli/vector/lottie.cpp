@@ -78,7 +78,7 @@ public:
     frame.evaluateMilliseconds = millisecondsSince(begin);
     begin = std::chrono::steady_clock::now();
     const Blob blob = session_.take(animation.compile(number), "gpgpCompileLottieFrame");
-    frame.convertMilliseconds = millisecondsSince(begin) - frame.evaluateMilliseconds;
+    frame.convertMilliseconds = std::max(millisecondsSince(begin) - frame.evaluateMilliseconds, 0.0); // evaluates, too
     GpgpDrawingCreateInfo drawingInfo = GPGP_DRAWING_CREATE_INFO_INIT;
     drawingInfo.data = blob.data();
     drawingInfo.size = blob.size();
@@ -115,23 +115,20 @@ public:
                                 return canvas_.recordPrepare(commands, now, info);
                               });
     };
-    auto [times, report] = rasterise(options_.repeat);
-    while (report.pathsDropped && options_.maxTileEntries == 0) {
-      std::optional<Canvas> larger = largerCanvas(session_, info_, report);
+    auto drawn = rasterise(options_.repeat);
+    while (drawn.report.pathsDropped && options_.maxTileEntries == 0) {
+      std::optional<Canvas> larger = largerCanvas(session_, info_, drawn.report);
       if (!larger) break;
       canvas_ = std::move(*larger);
       session_.check(canvas_.prewarm(), "gpgpPrewarm");
-      std::tie(times, report) = [&] {
-        auto again = rasterise(options_.repeat);
-        return std::pair(std::move(again.times), again.report);
-      }();
+      drawn = rasterise(options_.repeat);
     }
-    if (report.pathsDropped && failure.empty()) {
+    if (drawn.report.pathsDropped && failure.empty()) {
       std::ostringstream text;
-      text << "frame " << number << ": " << omitted(report, frame.paths, options_.maxTileEntries != 0);
+      text << "frame " << number << ": " << omitted(drawn.report, frame.paths, options_.maxTileEntries != 0);
       failure = text.str();
     }
-    frame.gpuMilliseconds = times.median();
+    frame.gpuMilliseconds = drawn.times.median();
     frame.pixels = host::downloadImage(session_.device(), target_, VK_IMAGE_LAYOUT_GENERAL);
     return frame;
   }

@@ -100,13 +100,30 @@ def mask(shape, mode="a", inv=False, o=100, f=0, x=0):
     return {"mode": mode, "inv": inv, "pt": still(shape), "o": still(o), "f": still([f, f]), "x": still(x)}
 
 
+def effect(kind, *values):
+    """(type, value) pairs: 0 a number, 1 an angle, 2 a colour, 7 a choice."""
+    return {"ty": kind, "nm": "", "en": 1, "ef": [{"ty": t, "nm": "", "v": still(v)} for t, v in values]}
+
+
 def box(l, t, r, b):
     return bezier([[l, t], [r, t], [r, b], [l, b]])
+
+
+# Some players want these before the others, and in this order.
+FIRST = ["ddd", "ind", "ty", "nm", "parent", "td", "tt", "refId", "sr", "ks", "ao", "hasMask", "masksProperties"]
+
+
+def ordered(layers):
+    return [{k: l[k] for k in FIRST + [k for k in l if k not in FIRST] if k in l} for l in layers]
 
 
 def animation(*layers, assets=None, **more):
     for i, l in enumerate(layers):
         l.setdefault("ind", i + 1)
+    for asset in assets or []:
+        if "layers" in asset:
+            asset["layers"] = ordered(asset["layers"])
+    layers = ordered(layers)
     out = {"v": "5.7.4", "fr": 30, "ip": 0, "op": 60, "w": 100, "h": 100, "nm": "", "ddd": 0,
            "assets": assets or [], "layers": list(layers)}
     out.update(more)
@@ -231,6 +248,9 @@ FILES = {
     "repeater-fades": animation(shapes(group(ellipse(25, 50, 30, 30), fill(*BLUE)), {
         "ty": "rp", "c": still(4), "o": still(0), "m": 1,
         "tr": dict(tr(p=(16, 0)), so=still(100), eo=still(20))})),
+    "repeater-above": animation(shapes(group(ellipse(25, 50, 30, 30), stroke(*GOLD, w=4), fill(*BLUE)), {
+        "ty": "rp", "c": still(4), "o": still(0), "m": 1,
+        "tr": dict(tr(p=(16, 0)), so=still(100), eo=still(100))})),
     "repeater-below": animation(shapes(group(ellipse(25, 50, 30, 30), stroke(*GOLD, w=4), fill(*BLUE)), {
         "ty": "rp", "c": still(4), "o": still(0), "m": 2,
         "tr": dict(tr(p=(16, 0)), so=still(100), eo=still(100))})),
@@ -258,21 +278,21 @@ FILES = {
     "blend": animation(*[shapes(rect(50, 8 + 12 * i, 80, 10), linear(), bm=m) for i, m in enumerate([1, 2, 3, 8, 10, 11, 15, 16])],
                        solid("#70a0c0")),
     "effects": animation(
-        shapes(ellipse(0, 0, 24, 24), fill(*RED), ks=tr(p=(25, 25)), ef=[{"ty": 29, "ef": [{"v": still(15)}, {"v": still(1)}, {"v": still(0)}]}]),
-        shapes(ellipse(0, 0, 24, 24), fill(*RED), ks=tr(p=(70, 25)), ef=[{"ty": 25, "ef": [
-            {"v": still([0, 0, 0, 1])}, {"v": still(200)}, {"v": still(135)}, {"v": still(8)}, {"v": still(10)}]}]),
-        shapes(ellipse(0, 0, 24, 24), fill(*RED), ks=tr(p=(25, 75)), ef=[{"ty": 21, "ef": [
-            {"v": still(0)}, {"v": still(0)}, {"v": still([0, 0.6, 0.2, 1])}, {"v": still(0)}, {"v": still(0)}, {"v": still(0)}, {"v": still(1)}]}]),
-        shapes(rect(0, 0, 30, 30), linear(s=still([-15, 0]), e=still([15, 0])), ks=tr(p=(70, 75)), ef=[{"ty": 20, "ef": [
-            {"v": still([0.2, 0, 0.4, 1])}, {"v": still([1, 0.9, 0.5, 1])}, {"v": still(100)}]}]),
+        shapes(ellipse(0, 0, 24, 24), fill(*RED), ks=tr(p=(25, 25)), ef=[effect(29, (0, 15), (7, 1), (7, 0))]),
+        shapes(ellipse(0, 0, 24, 24), fill(*RED), ks=tr(p=(70, 25)), ef=[effect(
+            25, (2, [0, 0, 0, 1]), (0, 200), (1, 135), (0, 8), (0, 10))]),
+        shapes(ellipse(0, 0, 24, 24), fill(*RED), ks=tr(p=(25, 75)), ef=[effect(
+            21, (0, 0), (7, 0), (2, [0, 0.6, 0.2, 1]), (7, 0), (0, 0), (0, 0), (0, 1))]),
+        shapes(rect(0, 0, 30, 30), linear(s=still([-15, 0]), e=still([15, 0])), ks=tr(p=(70, 75)), ef=[effect(
+            20, (2, [0.2, 0, 0.4, 1]), (2, [1, 0.9, 0.5, 1]), (0, 100))]),
         BACK()),
     "text-glyphs": animation(
         layer(5, t={"d": {"k": [{"t": 0, "s": {"s": 40, "f": "Own", "t": "AB A\rBB", "j": 2, "tr": 50, "lh": 44, "ls": 0,
-                                               "fc": [0.1, 0.2, 0.5], "sc": [0.9, 0.4, 0.1], "sw": 2, "of": True}}]}, "a": []},
+                                               "fc": [0.1, 0.2, 0.5], "sc": [0.9, 0.4, 0.1], "sw": 2, "of": True}}]}, "p": {}, "m": {"g": 1, "a": still([0, 0])}, "a": []},
               ks=tr(p=(50, 45))),
         fonts={"list": [{"fName": "Own", "fFamily": "Own", "fStyle": "Regular", "ascent": 75}]},
         chars=[{"ch": c, "size": 100, "style": "Regular", "w": w, "fFamily": "Own", "data": {"shapes": [group(s)]}}
-               for c, w, s in (("A", 60, path([[5, 0], [30, -70], [55, 0]])), ("B", 50, rect(25, -35, 40, 70, 10)))] +
+               for c, w, s in (("A", 60, path([[5, 0], [30, -70], [55, 0]])), ("B", 50, path([[5, -70], [45, -70], [45, 0], [5, 0]], [[0, 0], [-20, -10], [0, 0], [0, 0]])))] +
               [{"ch": " ", "size": 100, "style": "Regular", "w": 25, "fFamily": "Own", "data": {}}]),
 }
 

@@ -55,7 +55,8 @@ struct ShapeItem {
   /// Rectangle: radius. Round: radius. Pucker, Twist: amount. Zigzag: amplitude, ridges. Star: points, rotation, inner
   /// and outer radius, inner and outer roundness. Trim: start, end, offset. Repeater: copies, offset.
   Property numbers[6];
-  int mode = 0; ///< Star: 2 is a polygon. Trim: 2 is one after another. Repeater: 2 is below. Merge, Zigzag: its own.
+  int mode = 0; ///< Star: 2 is a polygon. Trim: 2 is one after another. Repeater: 2 is the last copy on top. Merge,
+                ///< Zigzag: its own.
   Property color, opacity; ///< Fill, Stroke
   std::shared_ptr<const Gradient> gradient;
   bool evenOdd = false;

@@ -202,21 +202,32 @@ Contour zigzagged(const Contour& contour, double amplitude, double ridges, bool 
   const int steps = 1 + static_cast<int>(std::clamp(std::floor(ridges), 0.0, 1000.0));
   const size_t count = contour.segments();
   double side = 1;
-  const auto add = [&](const std::array<Point, 4>& c, double t, double along) {
-    const Point p = pointOfCubic(c, t), a = pointOfCubic(c, std::max(t - 1e-4, 0.0)),
-                b = pointOfCubic(c, std::min(t + 1e-4, 1.0));
+  const auto wayAt = [](const std::array<Point, 4>& c, double t) { // of length 1, or 0 where there is none
+    const Point a = pointOfCubic(c, std::max(t - 1e-4, 0.0)), b = pointOfCubic(c, std::min(t + 1e-4, 1.0));
     const double l = std::hypot(b.x - a.x, b.y - a.y);
-    const Point d = l > 0 ? Point{(b.x - a.x) / l, (b.y - a.y) / l} : Point{1, 0};
+    return l > 0 ? Point{(b.x - a.x) / l, (b.y - a.y) / l} : Point{0, 0};
+  };
+  const auto add = [&](Point p, Point way, double before, double behind) {
+    const double l = std::hypot(way.x, way.y);
+    const Point d = l > 1e-9 ? Point{way.x / l, way.y / l} : Point{1, 0};
     const Point at{p.x - d.y * amplitude * side, p.y + d.x * amplitude * side};
-    const double reach = smooth ? along / 2 : 0;
-    result.vertices.push_back({at, {at.x - d.x * reach, at.y - d.y * reach}, {at.x + d.x * reach, at.y + d.y * reach}});
+    const double in = smooth ? before / 2 : 0, out = smooth ? behind / 2 : 0;
+    result.vertices.push_back({at, {at.x - d.x * in, at.y - d.y * in}, {at.x + d.x * out, at.y + d.y * out}});
     side = -side;
   };
+  double before = count && contour.closed ? lengthOfCubic(contour.segment(count - 1)) / steps : 0;
   for (size_t i = 0; i < count; ++i) {
     const std::array<Point, 4> c = contour.segment(i);
     const double length = lengthOfCubic(c);
-    for (int k = 0; k < steps; ++k) add(c, parameterAt(c, length * k / steps), length / steps);
-    if (i + 1 == count && !contour.closed) add(c, 1, length / steps);
+    for (int k = 0; k < steps; ++k) {
+      const double t = parameterAt(c, length * k / steps), step = length / steps;
+      Point way = wayAt(c, t);
+      if (k == 0 && (i > 0 || contour.closed)) // halfway between both sides of a corner
+        way = way + wayAt(contour.segment((i + count - 1) % count), 1);
+      add(pointOfCubic(c, t), way, before, step);
+      before = step;
+    }
+    if (i + 1 == count && !contour.closed) add(c[3], wayAt(c, 1), before, 0);
   }
   return result;
 }

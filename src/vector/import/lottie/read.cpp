@@ -167,8 +167,7 @@ private:
     if (layer.stretch == 0) layer.stretch = 1;
     layer.hidden = numberOf(value, "hd") != 0;
     layer.autoOrient = numberOf(value, "ao") != 0;
-    const Json* ks = find(value, "ks");
-    layer.transform = reader_.transform(ks ? *ks : Json::object());
+    layer.transform = reader_.transform(orNothing(find(value, "ks")));
     if (numberOf(value, "ddd") != 0)
       reader_.unsupported(value, "layers in three dimensions are not supported: they are drawn flat");
     if (numberOf(value, "mb") != 0) reader_.unsupported(value, "motion blur is not supported");

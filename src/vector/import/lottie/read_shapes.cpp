@@ -46,7 +46,7 @@ bool Reader::shape(const Json& value, ShapeItem& item, size_t depth) {
   if (type == "gr") {
     const Json& items = listOf(value, "it");
     item.kind = ShapeKind::Group;
-    item.transform = transform(Json::object());
+    item.transform = transform(orNothing(nullptr));
     for (const Json& part : items)
       if (stringOf(part, "ty") == "tr") item.transform = transform(part);
     item.items = shapes(items, depth + 1);
@@ -79,8 +79,7 @@ bool Reader::shape(const Json& value, ShapeItem& item, size_t depth) {
   } else if (type == "rp") {
     item.kind = ShapeKind::Repeater;
     item.mode = intOf(value, "m", 1);
-    const Json* tr = find(value, "tr");
-    item.transform = transform(tr ? *tr : Json::object());
+    item.transform = transform(orNothing(find(value, "tr")));
     numbers({{"c", 1}, {"o", 0}});
   } else if (type == "rd") {
     item.kind = ShapeKind::Round;

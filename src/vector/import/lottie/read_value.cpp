@@ -269,8 +269,7 @@ std::vector<TextDocument> Reader::documents(const Json& text) {
   if (!listOf(text, "a").empty()) unsupported(listOf(text, "a"), "text animators are not supported");
   if (const Json* path = find(text, "p"); path && find(*path, "m"))
     unsupported(*path, "text on a path is not supported: it is drawn along a line");
-  const Json* d = find(text, "d");
-  for (const Json& key : d ? listOf(*d, "k") : Json::array()) {
+  for (const Json& key : listOf(orNothing(find(text, "d")), "k")) {
     const Json* s = find(key, "s");
     if (!s || !s->is_object() || result.size() >= 10'000) continue;
     TextDocument document;

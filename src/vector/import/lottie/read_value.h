@@ -45,6 +45,11 @@ inline const Json& listOf(const Json& object, const char* key) {
   const Json* value = find(object, key);
   return value && value->is_array() ? *value : kNone;
 }
+/// The value, or one without anything. A conditional expression would copy the value.
+inline const Json& orNothing(const Json* value) {
+  static const Json kNothing = Json::object();
+  return value ? *value : kNothing;
+}
 /// "layers[2].shapes[0]"
 std::string placeOf(const Json& root, const Json* value);
 

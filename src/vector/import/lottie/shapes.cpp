@@ -136,7 +136,7 @@ private:
       made.push_back(std::move(copy));
     }
     list = {};
-    if (item.mode != 2) std::reverse(made.begin(), made.end()); // the last copy is on top
+    if (item.mode == 2) std::reverse(made.begin(), made.end()); // the last copy is on top
     for (List& copy : made) {
       list.entries.insert(list.entries.end(), copy.entries.begin(), copy.entries.end());
       for (PaintNode& node : copy.nodes) list.nodes.push_back(std::move(node));
