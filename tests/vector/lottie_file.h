@@ -39,4 +39,14 @@ struct LottieFile {
   }
 };
 
+/// An animation of 100 x 100 units and 60 frames.
+inline std::string animation(const std::string& layers, const std::string& more = "") {
+  return R"({"v":"5.7","fr":30,"ip":0,"op":60,"w":100,"h":100,)" + more + R"("layers":[)" + layers + "]}";
+}
+inline std::string shapeLayer(const std::string& shapes, const std::string& ks = "{}", const std::string& more = "") {
+  return R"({"ty":4,"ip":0,"op":60,"st":0,)" + more + R"("ks":)" + ks + R"(,"shapes":[)" + shapes + "]}";
+}
+inline const std::string kSquare = R"({"ty":"rc","p":{"k":[10,20]},"s":{"k":[20,10]},"r":{"k":0}})";
+inline const std::string kRed = R"({"ty":"fl","c":{"k":[1,0,0]},"o":{"k":100}})";
+
 } // namespace gpgp::test

@@ -77,9 +77,6 @@ TileDifference worst(const Pixels& a, const Pixels& b) {
   });
 }
 
-std::string animation(const std::string& layers, const std::string& more = "") {
-  return R"({"v":"5.7","fr":30,"ip":0,"op":60,"w":100,"h":100,)" + more + R"("layers":[)" + layers + "]}";
-}
 /// A solid of 100 x 100 with something about it.
 std::string solidLayer(const std::string& color, const std::string& more = "") {
   return R"({"ty":1,"sw":100,"sh":100,"sc":")" + color + R"(","ip":0,"op":60,"st":0,"ks":{},)" + more + R"("nm":""})";

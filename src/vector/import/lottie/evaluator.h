@@ -5,6 +5,7 @@
 #include "vector/import/lottie/shapes.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gpgp::vector::lottie {
 
