@@ -3,6 +3,7 @@
 #define GPGP_H
 #include <gpgp/atlas.h>
 #include <gpgp/core.h>
+#include <gpgp/lottie.h>
 #include <gpgp/lsystem.h>
 #include <gpgp/spawn.h>
 #include <gpgp/spawn_builder.h>

@@ -37,6 +37,9 @@ GpgpStructureType useEveryStruct(void) {
   GPGP_USE(GpgpLsystemInfo, GPGP_LSYSTEM_INFO_INIT);
   GPGP_USE(GpgpLsystemReport, GPGP_LSYSTEM_REPORT_INIT);
   GPGP_USE(GpgpSvgSource, GPGP_SVG_SOURCE_INIT);
+  GPGP_USE(GpgpLottieSource, GPGP_LOTTIE_SOURCE_INIT);
+  GPGP_USE(GpgpLottieInfo, GPGP_LOTTIE_INFO_INIT);
+  GPGP_USE(GpgpLottieFrame, GPGP_LOTTIE_FRAME_INIT);
   GPGP_USE(GpgpDrawingCreateInfo, GPGP_DRAWING_CREATE_INFO_INIT);
   GPGP_USE(GpgpDrawingInfo, GPGP_DRAWING_INFO_INIT);
   GPGP_USE(GpgpGlyphSource, GPGP_GLYPH_SOURCE_INIT);

@@ -7,11 +7,6 @@
 
 namespace gpgp::cli {
 
-void VectorImages::attach(GpgpSvgSource& source) {
-  source.imageFn = decode;
-  source.imageUserData = this;
-}
-
 VkBool32 GPGP_CALL VectorImages::decode(void* userData, uint32_t index, const void* data, size_t size, uint32_t* width,
                                         uint32_t* height) {
   auto& images = *static_cast<VectorImages*>(userData);

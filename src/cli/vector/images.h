@@ -1,4 +1,5 @@
-// The images inside an SVG: decoded while it is compiled, shrunk when it is known how large they are shown.
+// The images inside an SVG or an animation: decoded while it is compiled, shrunk when it is known how large they are
+// shown.
 #pragma once
 #include "cli/shared/textures.h"
 
@@ -18,7 +19,10 @@ public:
   VectorImages() = default;
   VectorImages(const VectorImages&) = delete; // the source refers to it
   VectorImages& operator=(const VectorImages&) = delete;
-  void attach(GpgpSvgSource& source);
+  template <class Source> void attach(Source& source) {
+    source.imageFn = decode;
+    source.imageUserData = this;
+  }
   const std::vector<host::Picture>& pictures() const { return pictures_; }
 
 private:

@@ -8,6 +8,7 @@ namespace gpgp::cli {
 namespace {
 /// A message as an object: the element that is named first is what it is about; its label is "file:line:column".
 Json part(const std::string& label, const std::string& text, const std::string& drawing) {
+  if (label.starts_with(drawing + ": ")) return {{"place", label.substr(drawing.size() + 2)}, {"text", text}};
   const size_t open = text.find('<'), close = text.find('>', open);
   Json json = {{"element", close != text.npos ? text.substr(open + 1, close - open - 1) : "style"},
                {"line", Json()},
@@ -23,12 +24,6 @@ Json part(const std::string& label, const std::string& text, const std::string& 
 }
 const char* wordOf(GpgpSeverity severity) { return severity == GPGP_SEVERITY_ERROR ? "error" : "warning"; }
 } // namespace
-
-void SvgMessages::attach(GpgpSvgSource& source) {
-  source.messageFn = take;
-  source.messageUserData = this;
-  name_ = source.name;
-}
 
 void SvgMessages::take(void* userData, const GpgpMessage* message) {
   auto& messages = *static_cast<SvgMessages*>(userData);

@@ -1,4 +1,4 @@
-// What the compiler says while it reads an SVG: on standard error for people, and as JSON.
+// What the compiler says while it reads an SVG or an animation: on standard error for people, and as JSON.
 #pragma once
 #include "cli/shared/common.h"
 
@@ -14,7 +14,11 @@ public:
   explicit SvgMessages(size_t shown = SIZE_MAX) : shown_(shown) {}
   SvgMessages(const SvgMessages&) = delete; // the source refers to it
   SvgMessages& operator=(const SvgMessages&) = delete;
-  void attach(GpgpSvgSource& source);
+  template <class Source> void attach(Source& source) {
+    source.messageFn = take;
+    source.messageUserData = this;
+    name_ = source.name;
+  }
 
   /// Prints what is not printed yet. To be called when the source is compiled.
   void finish();
@@ -22,7 +26,8 @@ public:
   std::string failure() const;
 
   size_t count() const { return list_.size(); }
-  /// Of all messages: severity, element, line, column and text; the file where it is a style sheet.
+  /// Of all messages: severity, element, line, column and text; the file where it is a style sheet. Those of an
+  /// animation have their place in the file instead of element, line and column.
   Json json() const;
   /// The same of what is not supported, without severity.
   Json unsupported() const;

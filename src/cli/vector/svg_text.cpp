@@ -56,12 +56,6 @@ SvgText::SvgText(const std::vector<std::string>& files) {
   layout_ = std::move(*layout);
 }
 
-void SvgText::attach(GpgpSvgSource& source) {
-  if (faces_.empty()) return;
-  source.textFn = shape;
-  source.textUserData = this;
-}
-
 std::vector<GpgpFont> SvgText::chosen(const GpgpSvgTextSpan& span) const {
   const std::vector<std::string> families = familiesOf(span.families);
   const auto rank = [&](const Face& face) { // the smallest first

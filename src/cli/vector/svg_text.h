@@ -1,4 +1,4 @@
-// The text of an SVG, shaped in fonts that were given.
+// The text of an SVG or of an animation, shaped in fonts that were given.
 #pragma once
 #include <gpgp/text.hpp>
 #include <gpgp/vector.h>
@@ -17,7 +17,11 @@ public:
   SvgText(const SvgText&) = delete; // the source refers to it
   SvgText& operator=(const SvgText&) = delete;
   /// Without fonts, text stays unsupported.
-  void attach(GpgpSvgSource& source);
+  template <class Source> void attach(Source& source) {
+    if (faces_.empty()) return;
+    source.textFn = shape;
+    source.textUserData = this;
+  }
 
 private:
   struct Face {

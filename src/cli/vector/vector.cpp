@@ -3,8 +3,10 @@
 #include "cli/shared/css_color.h"
 #include "cli/shared/session.h"
 #include "cli/shared/textures.h"
+#include "cli/vector/canvas_room.h"
 #include "cli/vector/images.h"
 #include "cli/vector/in_pass.h"
+#include "cli/vector/lottie.h"
 #include "cli/vector/patch_tiles.h"
 #include "cli/vector/reference.h"
 #include "cli/vector/svg_files.h"
@@ -27,18 +29,6 @@
 namespace gpgp::cli {
 namespace {
 
-struct VectorOptions {
-  std::string file, out, background, stages, antialiasing, method = "flattened";
-  Size size;
-  double zoom = 1, tilt = 0;
-  std::vector<double> center;
-  std::vector<std::string> fonts;
-  bool allWarnings = false;
-  bool reference = false;
-  uint32_t repeat = 1, maxTileEntries = 0;
-};
-
-constexpr size_t kShownMessages = 10;
 constexpr float kLargest = 4096; ///< pixels of a side, where --size does not say
 
 struct Stages {
@@ -126,59 +116,6 @@ double compareWithReference(std::span<const char> bytes, std::span<const uint8_t
       Blend::Srgb);
 }
 
-/// A canvas for what a report says is needed, or as near to that as the device has room for; none where it has not.
-/// `info`: of the canvas that reported; becomes that of the new one.
-std::optional<Canvas> largerCanvas(Session& session, GpgpCanvasCreateInfo& info, const GpgpCanvasReport& report) {
-  const auto wanted = [](uint32_t needed, uint32_t given, double share) {
-    // Somewhat more than is needed: what had no tile words has not been asked for its entries.
-    const double more = needed > given ? 1.125 * static_cast<double>(needed) - static_cast<double>(given) : 0;
-    return static_cast<uint32_t>(std::min(static_cast<double>(given) + more * share, static_cast<double>(1u << 28)));
-  };
-  // Eighths of what is missing, of both: as many as there is room for, and rather of words, which come first.
-  for (int eighths = 16; eighths > 0; --eighths)
-    for (int ofWords = std::min(eighths, 8); ofWords >= 0 && eighths - ofWords <= 8; --ofWords) {
-      GpgpCanvasCreateInfo next = info;
-      next.maxPaths = std::max(info.maxPaths, report.paths);
-      next.maxTileEntries = wanted(report.tileEntries, report.tileEntriesGiven, (eighths - ofWords) / 8.0);
-      next.maxTileWords = wanted(report.tileWords, report.tileWordsGiven, ofWords / 8.0);
-      next.maxDrawings = std::max(info.maxDrawings, std::min(report.items, 65536u));
-      if (report.layerPixels != UINT32_MAX) // which no budget holds
-        next.maxLayerPixels = std::max(info.maxLayerPixels, std::min(report.layerPixels, 1u << 28));
-      next.maxLayerOperations = std::max(info.maxLayerOperations, std::min(report.layerOperations, 65536u));
-      const bool layers = next.maxDrawings > report.itemsGiven || next.maxLayerPixels > report.layerPixelsGiven ||
-                          next.maxLayerOperations > report.layerOperationsGiven;
-      if (!layers && next.maxTileEntries == report.tileEntriesGiven && next.maxTileWords == report.tileWordsGiven)
-        continue;
-      Result<Canvas> made = Canvas::create(session.context(), next);
-      if (!made) continue;
-      info = next;
-      return std::move(*made);
-    }
-  return std::nullopt;
-}
-
-/// What is missing, and what would have held it. `said`: the budget was.
-std::string omitted(const GpgpCanvasReport& report, uint32_t paths, bool said) {
-  if (report.layerPixels == UINT32_MAX)
-    return "the drawing's layers were left out: one of them, or all side by side, are larger than 16384 x 16384 pixels";
-  if (report.layerPixels > report.layerPixelsGiven || report.layerOperations > report.layerOperationsGiven)
-    return "the drawing's layers were left out: they need " + std::to_string(report.layerPixels) + " pixels and " +
-           std::to_string(report.layerOperations) + " operations, and there is room for " +
-           std::to_string(report.layerPixelsGiven) + " and " + std::to_string(report.layerOperationsGiven) +
-           "; a smaller --size needs fewer";
-  const bool words = report.tileWords > report.tileWordsGiven;
-  const std::string text =
-      std::to_string(report.pathsDropped) + " of " + std::to_string(paths) + " paths were left out";
-  if (report.layerOperations && !words && report.tileEntries <= report.tileEntriesGiven)
-    return text + ": the device has no room for all layers side by side; a smaller --size needs less";
-  if (said) // as many words come with them
-    return text + "; --max-tile-entries " + std::to_string(std::max(report.tileEntries, words ? report.tileWords : 0)) +
-           " would hold them, or somewhat more";
-  return text + ": they need " + std::to_string(words ? report.tileWords : report.tileEntries) +
-         (words ? " tile words" : " tile entries") + ", and the device has room for " +
-         std::to_string(words ? report.tileWordsGiven : report.tileEntriesGiven) + "; a smaller --size needs fewer";
-}
-
 /// Draws inside a render pass, and says what came of it. `reference`: decibels of pixels.
 Outcome outcomeInPass(Session& session, const Drawing& drawing, const GpgpDrawingInfo& facts,
                       const VectorOptions& options, InPassInfo info,
@@ -222,6 +159,9 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   const std::array<float, 4> background = parseBackground(options.background);
   const std::string bytes = readInput(options.file), name = inputName(options.file);
   if (bytes.starts_with("GPVD")) throw Failure(name + ": a baked drawing; SVG is wanted, from which it was made");
+  if (isLottie(bytes)) return lottie(options, common, bytes);
+  if (options.frame || options.sheet.width)
+    throw Failure(name + ": no animation; --frame and --sheet are for Lottie files");
   SvgMessages messages(options.allWarnings ? SIZE_MAX : kShownMessages);
   GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
   source.name = name.c_str();
@@ -415,8 +355,10 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
 
 Work addVector(CLI::App& app) {
   auto options = std::make_shared<VectorOptions>();
-  CLI::App* command = app.add_subcommand("vector", "Rasterise an SVG on the GPU");
-  command->add_option("FILE", options->file, "SVG or gzip-compressed SVG (.svgz); - is standard input")
+  CLI::App* command = app.add_subcommand("vector", "Rasterise an SVG, or frames of a Lottie animation, on the GPU");
+  command
+      ->add_option("FILE", options->file,
+                   "SVG, gzip-compressed SVG (.svgz), or Lottie animation (.json, .lottie); - is standard input")
       ->required()
       ->check(existingInput());
   addSize(*command, "--size", options->size, "Picture size in pixels (default: the drawing's own, at most 4096)");
@@ -447,6 +389,12 @@ Work addVector(CLI::App& app) {
   command->add_option("--tilt", options->tilt, "Tilt the page by so many degrees, in perspective")
       ->check(CLI::Range(-89.0, 89.0))
       ->capture_default_str();
+  CLI::Option* frame =
+      command->add_option("--frame", options->frame, "Lottie: the frame, which need not be whole (default: the first)")
+          ->type_name("N");
+  addSize(*command, "--sheet", options->sheet,
+          "Lottie: a sheet of so many columns and rows of frames, equally spaced over the animation")
+      ->excludes(frame);
   command->add_option("--background", options->background, "CSS colour behind the drawing (default: transparent)")
       ->type_name("COLOUR");
   command->add_option("-o,--out,OUT", options->out, "Write the picture")->check(pngFile())->type_name("FILE.png");
@@ -467,6 +415,8 @@ Examples:
   gpgp vector tiger.svgz --size 2048x2048 --background white --out tiger.png
   cat icon.svg | gpgp vector - icon.png
   gpgp vector map.svg --aa 4 --repeat 100 --json | jq .gpu_ms_median
+  gpgp vector spinner.json --frame 12.5 --out spinner.png
+  gpgp vector spinner.lottie --sheet 6x4 --size 160x160 --out sheet.png
 
 What is approximated or left out is named on standard error with its place, the first ten unless --all-warnings is given,
 counted, and listed by --json: all as messages, what is not supported as unsupported.)");
