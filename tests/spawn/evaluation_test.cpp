@@ -347,8 +347,7 @@ TEST(EvaluationTest, VerticesAreThoseOfTheReference) {
     }
     EXPECT_EQ(found, wanted) << sample.name;
     static constexpr uint32_t kPattern[] = {0, 1, 2, 0, 2, 3};
-    for (uint32_t i = 0; i < result.indexCount; ++i)
-      ASSERT_EQ(result.indices[i], i / 6 * 4 + kPattern[i % 6]);
+    for (uint32_t i = 0; i < result.indexCount; ++i) ASSERT_EQ(result.indices[i], i / 6 * 4 + kPattern[i % 6]);
   }
 }
 
@@ -417,33 +416,33 @@ TEST(EvaluationTest, KeysAndRegionsChooseAmongTheWhole) {
 
 TEST(EvaluationTest, BoundsHoldAllThatIsKept) {
   for (const bool boxes : {true, false}) { // those of boxes end where corners are
-  const auto evaluator = makeEvaluator(textSource(
-      boxes ? "axiom Box A;\nterminal T (1, 0);\nA = Repeat(Y, 7, ADJUST_TO_FILL) Rotate(10, 20, 30) T;\n"
-            : host::readText(GPGP_SAMPLE_GRAMMARS "/city.pga")));
-  auto evaluation = std::move(*evaluator.evaluation());
-  auto info = init<GpgpEvaluationInfo>();
-  info.flags = GPGP_EVALUATION_BOUNDS;
-  info.vertices = &kLayout;
-  const auto result = derive(evaluation, axiomsOf(6, 20, 60, 20), 2, info);
-  for (uint32_t a = 0; a < result.axiomCount; ++a) {
-    const GpgpEvaluatedAxiom& axiom = result.axioms[a];
-    float low[3] = {1e9f, 1e9f, 1e9f}, high[3] = {-1e9f, -1e9f, -1e9f};
-    for (uint32_t v = 0; v < axiom.vertexCount; ++v) {
-      float place[3];
-      std::memcpy(place, static_cast<const char*>(axiom.vertices) + size_t(v) * kLayout.stride, sizeof place);
+    const auto evaluator = makeEvaluator(
+        textSource(boxes ? "axiom Box A;\nterminal T (1, 0);\nA = Repeat(Y, 7, ADJUST_TO_FILL) Rotate(10, 20, 30) T;\n"
+                         : host::readText(GPGP_SAMPLE_GRAMMARS "/city.pga")));
+    auto evaluation = std::move(*evaluator.evaluation());
+    auto info = init<GpgpEvaluationInfo>();
+    info.flags = GPGP_EVALUATION_BOUNDS;
+    info.vertices = &kLayout;
+    const auto result = derive(evaluation, axiomsOf(6, 20, 60, 20), 2, info);
+    for (uint32_t a = 0; a < result.axiomCount; ++a) {
+      const GpgpEvaluatedAxiom& axiom = result.axioms[a];
+      float low[3] = {1e9f, 1e9f, 1e9f}, high[3] = {-1e9f, -1e9f, -1e9f};
+      for (uint32_t v = 0; v < axiom.vertexCount; ++v) {
+        float place[3];
+        std::memcpy(place, static_cast<const char*>(axiom.vertices) + size_t(v) * kLayout.stride, sizeof place);
+        for (int i = 0; i < 3; ++i) {
+          low[i] = std::min(low[i], place[i]);
+          high[i] = std::max(high[i], place[i]);
+        }
+      }
       for (int i = 0; i < 3; ++i) {
-        low[i] = std::min(low[i], place[i]);
-        high[i] = std::max(high[i], place[i]);
+        EXPECT_LE(axiom.bounds.min[i], low[i] + 1e-3f);
+        EXPECT_GE(axiom.bounds.max[i], high[i] - 1e-3f);
+        if (!boxes) continue;
+        EXPECT_NEAR(axiom.bounds.min[i], low[i], 1e-3f);
+        EXPECT_NEAR(axiom.bounds.max[i], high[i], 1e-3f);
       }
     }
-    for (int i = 0; i < 3; ++i) {
-      EXPECT_LE(axiom.bounds.min[i], low[i] + 1e-3f);
-      EXPECT_GE(axiom.bounds.max[i], high[i] - 1e-3f);
-      if (!boxes) continue;
-      EXPECT_NEAR(axiom.bounds.min[i], low[i], 1e-3f);
-      EXPECT_NEAR(axiom.bounds.max[i], high[i], 1e-3f);
-    }
-  }
   }
 }
 
