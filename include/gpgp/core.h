@@ -101,6 +101,8 @@ enum {
   GPGP_NOT_EXECUTED = 3,
   /** An array or byte range was too small. What fits was written, and the returned count or size is what is needed. */
   GPGP_INCOMPLETE = 4,
+  /** The engine ended the call early. */
+  GPGP_CANCELLED = 5,
 
   /* Errors are negative. Nothing was changed, and a message says why. */
 
@@ -153,11 +155,17 @@ enum {
   GPGP_STRUCTURE_SPAWNER_CREATE_INFO = 102,
   GPGP_STRUCTURE_SPAWN_INFO = 103,
   GPGP_STRUCTURE_SPAWN_REPORT = 104,
+  GPGP_STRUCTURE_EVALUATOR_CREATE_INFO = 105,
+  GPGP_STRUCTURE_EVALUATION_INFO = 106,
+  GPGP_STRUCTURE_EVALUATION_RESULT = 107,
+  GPGP_STRUCTURE_TILE_SET_CREATE_INFO = 108,
+  GPGP_STRUCTURE_TILE_INFO = 109,
   GPGP_STRUCTURE_LSYSTEM_SOURCE = 110,
   GPGP_STRUCTURE_LSYSTEM_CREATE_INFO = 111,
   GPGP_STRUCTURE_LSYSTEM_RECORDER_CREATE_INFO = 112,
   GPGP_STRUCTURE_LSYSTEM_INFO = 113,
   GPGP_STRUCTURE_LSYSTEM_REPORT = 114,
+  GPGP_STRUCTURE_TILE_SET_REPORT = 115,
   /* vector */
   GPGP_STRUCTURE_SVG_SOURCE = 200,
   GPGP_STRUCTURE_DRAWING_CREATE_INFO = 201,
@@ -223,7 +231,7 @@ extern "C" {
 typedef struct GpgpContext_T* GpgpContext;
 typedef struct GpgpAsset_T* GpgpAsset;       /**< A grammar, drawing, glyph set or geometry set. */
 typedef struct GpgpRecorder_T* GpgpRecorder; /**< A spawner, canvas or visibility recorder. */
-typedef struct GpgpHistory_T* GpgpHistory;   /**< The history of one camera or canvas. */
+typedef struct GpgpHistory_T* GpgpHistory;   /**< The history of one camera or canvas, or a tile set. */
 
 typedef int32_t GpgpService;
 enum { GPGP_SERVICE_CORE = 0, GPGP_SERVICE_SPAWN = 1, GPGP_SERVICE_VECTOR = 2, GPGP_SERVICE_VISIBILITY = 3 };

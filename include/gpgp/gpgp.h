@@ -3,11 +3,13 @@
 #define GPGP_H
 #include <gpgp/atlas.h>
 #include <gpgp/core.h>
+#include <gpgp/evaluator.h>
 #include <gpgp/lottie.h>
 #include <gpgp/lsystem.h>
 #include <gpgp/spawn.h>
 #include <gpgp/spawn_builder.h>
 #include <gpgp/text.h>
+#include <gpgp/tiles.h>
 #include <gpgp/ui.h>
 #include <gpgp/vector.h>
 #include <gpgp/visibility.h>

@@ -60,6 +60,27 @@ typedef struct GpgpInstance {
 } GpgpInstance;
 #define GPGP_NO_RULE 0xffffffffu
 
+/** A terminal shape in 32 bytes, which spawners with GPGP_SPAWNER_COMPACT write. gpgp/shaders/compact_instance.h reads
+ * it in GLSL and HLSL. The point p of the unit shape lies at position + rotate(rotation, scale * p).
+ *
+ *  No point of the unit shape is farther from where GpgpInstance::transform puts it than 6e-4 times the largest of the
+ *  three extents in the world, plus the rounding of position. Extents are 6.2e-5 to 65504 metres; smaller ones become
+ * 0, larger ones 65504. Shear is lost: the axiom's transform must rotate, mirror, move, and scale alike in all
+ *  directions. */
+typedef struct GpgpCompactInstance {
+  float position[3]; /**< World space. */
+  uint32_t seed;     /**< GpgpInstance::seed. */
+  /** Half floats: the extents in the world. Polygons have the axiom's scale in the third, as GpgpInstance::transform
+   *  has. Where the axiom mirrors, the first one is negative. */
+  uint16_t scale[3];
+  uint16_t terminal; /**< GpgpInstance::terminal, from which the mesh and the material follow. */
+  /** A unit quaternion x, y, z, w without its largest component, which is positive: the other three in their order, as
+   *  15 bits each, of which 0 to 32767 stand for -sqrt(1/2) to sqrt(1/2). The highest bits of the first two say which
+   *  is missing: bit 0 in the first, bit 1 in the second. */
+  uint16_t rotation[3];
+  uint16_t shape; /**< A GpgpShape. */
+} GpgpCompactInstance;
+
 /** Types of shapes. PRISM3 to PRISM8 and BOX are right prisms on regular polygons and on a square. */
 typedef uint32_t GpgpShape;
 enum {
@@ -248,6 +269,9 @@ typedef uint64_t GpgpSpawnerFlags;
  *  long as maxTerminals holds all terminals and no shape is dropped. Axioms should differ in seed or id. Terminals with
  *  equal keys follow in the order of their axioms, but the order of thousands of equal keys is unspecified. */
 #define GPGP_SPAWNER_ORDERED ((GpgpSpawnerFlags)1)
+/** The spawner writes GpgpCompactInstance instead of GpgpInstance. Its recordings are always sorted by bucket, so that
+ *  maxTerminals bounds them. Without GPGP_SPAWNER_ORDERED there are no regions. Not with vertices. */
+#define GPGP_SPAWNER_COMPACT ((GpgpSpawnerFlags)2)
 
 /** Budgets of a spawner. What does not fit a budget is counted in the report. */
 typedef struct GpgpSpawnerCreateInfo {
@@ -328,8 +352,11 @@ typedef struct GpgpSpawnInfo {
   GpgpBuffer axiomCounter;
   uint32_t axiomCount;
   GpgpSpawnFlags flags;
-  /** Output, GpgpInstance[]. Its size is the budget. STORAGE usage. NULL: the recording only counts, and needs
-   *  draws. */
+  /** Added to every firstInstance that the recording writes to draws: the number of instances that precede the range
+   *  `instances` in what the engine binds. Without GPGP_SPAWN_REGIONS, and not for vertices. */
+  uint32_t firstInstance;
+  /** Output, GpgpInstance[], or GpgpCompactInstance[] with GPGP_SPAWNER_COMPACT. Its size is the budget. STORAGE usage.
+   * NULL: the recording only counts, and needs draws. */
   GpgpBuffer instances;
   const GpgpVertexOutput* vertices; /**< Output of spawners that were created for vertices, instead of instances. */
   /** Output, optional. VkDrawIndexedIndirectCommand[buckets], one for each bucket. STORAGE usage. Fields that are not

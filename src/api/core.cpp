@@ -231,7 +231,7 @@ void GPGP_CALL gpgpDestroyRecorder(GpgpRecorder recorder) {
   destroy("gpgpDestroyRecorder", recorder, Kind::spawner, Kind::atlasRecorder, "recorder");
 }
 void GPGP_CALL gpgpDestroyHistory(GpgpHistory history) {
-  destroy("gpgpDestroyHistory", history, Kind::canvasHistory, Kind::atlas, "history");
+  destroy("gpgpDestroyHistory", history, Kind::canvasHistory, Kind::tileSet, "history");
 }
 
 GpgpResult GPGP_CALL gpgpGetMemoryReport(GpgpContext handle, GpgpMemoryReport* report) {

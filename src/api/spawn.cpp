@@ -86,7 +86,10 @@ GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext handle, const GpgpSpawnerCrea
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_SPAWNER_CREATE_INFO, "info"); !ok) return ok;
     if (!spawner) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "spawner is NULL");
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
-    if (info->flags & ~GPGP_SPAWNER_ORDERED) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
+    if (info->flags & ~(GPGP_SPAWNER_ORDERED | GPGP_SPAWNER_COMPACT))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
+    if ((info->flags & GPGP_SPAWNER_COMPACT) && info->vertices)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "flags has GPGP_SPAWNER_COMPACT, but vertices is set");
     if (info->maxShapes > (1u << 24) || info->maxTerminals > (1u << 24))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxShapes and maxTerminals are at most 16777216");
     if (info->maxDepth > 65535) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxDepth is at most 65535");
@@ -133,9 +136,15 @@ Result<void> checkOutput(const spawn::Spawner& spawner, const GpgpSpawnInfo& inf
   } else if (info.vertices) {
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "vertices is set; the spawner was made for instances");
   }
-  if (info.instances.buffer && info.instances.size < sizeof(GpgpInstance))
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "instances.size is below one GpgpInstance (%zu bytes)",
-                     sizeof(GpgpInstance));
+  if (info.instances.buffer && info.instances.size < spawner.instanceBytes())
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "instances.size is below one instance (%u bytes)",
+                     spawner.instanceBytes());
+  if (regions && spawner.compact() && !spawner.ordered())
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "GPGP_SPAWN_REGIONS is set; a spawner for compact instances has "
+                                                  "regions only with GPGP_SPAWNER_ORDERED");
+  if (info.firstInstance && (regions || spawner.vertices()))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "firstInstance is %u; with %s it must be 0", info.firstInstance,
+                     regions ? "GPGP_SPAWN_REGIONS" : "vertices");
   if (counts && !info.draws.buffer)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.buffer is NULL, and draws.buffer, where a recording could count",
                      spawner.vertices() ? "vertices->vertices" : "instances");

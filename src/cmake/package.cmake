@@ -6,7 +6,7 @@
 # GPGP_INSTALL is off where gpgp is a part of another project: what that installs is its own affair.
 option(GPGP_INSTALL "Make install rules" ${PROJECT_IS_TOP_LEVEL})
 
-foreach(target gpgp gpgp_compiler gpgp_text)
+foreach(target gpgp gpgp_compiler gpgp_evaluator gpgp_text)
   if(TARGET ${target})
     gpgp_exports(${target} ${CMAKE_CURRENT_LIST_DIR}/exports.map)
   endif()
@@ -17,7 +17,7 @@ endif()
 include(CMakePackageConfigHelpers)
 
 set(installed)
-foreach(target gpgp gpgp_compiler gpgp_text)
+foreach(target gpgp gpgp_compiler gpgp_evaluator gpgp_text)
   if(GPGP_BUILD_SHARED AND TARGET ${target})
     list(APPEND installed ${target})
   endif()
@@ -41,7 +41,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # The packages and linker flags behind each static library's private dependencies.
 set(GPGP_PACKAGES)
-foreach(target gpgp gpgp_compiler gpgp_text)
+foreach(target gpgp gpgp_compiler gpgp_evaluator gpgp_text)
   set(${target}_flags)
   if(TARGET ${target}_static)
     get_target_property(libraries ${target}_static LINK_LIBRARIES)
@@ -87,8 +87,9 @@ file(RELATIVE_PATH GPGP_PC_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /pre
 string(REGEX REPLACE "/$" "" GPGP_PC_PREFIX ${GPGP_PC_PREFIX})
 set(gpgp_description "${PROJECT_DESCRIPTION}")
 set(gpgp_compiler_description "Compilers for gpgp: grammars and SVG to baked assets")
+set(gpgp_evaluator_description "Grammars on the CPU: what gpgp spawns, without a device")
 set(gpgp_text_description "Text for gpgp: fonts, shaping and layout")
-foreach(target gpgp gpgp_compiler gpgp_text)
+foreach(target gpgp gpgp_compiler gpgp_evaluator gpgp_text)
   if(NOT TARGET ${target} AND NOT TARGET ${target}_static)
     continue()
   endif()

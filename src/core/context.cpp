@@ -36,6 +36,7 @@ const char* kindName(Kind kind) {
   case Kind::cameraHistory: return "camera history";
   case Kind::atlasRecorder: return "shading atlas recorder";
   case Kind::atlas: return "shading atlas";
+  case Kind::tileSet: return "tile set";
   }
   return "unknown object";
 }

@@ -25,6 +25,7 @@ enum class Kind : uint32_t {
   canvasHistory,
   cameraHistory,
   atlas,
+  tileSet,
   list
 };
 const char* kindName(Kind kind);

@@ -297,6 +297,15 @@ void Recorder::edgeBarrier(const Record& record, bool entry) const {
                                        images.data());
 }
 
+void recordFillBarrier(const Device& device, VkCommandBuffer commandBuffer, const GpgpAccess& use, bool entry) {
+  const VkPipelineStageFlags stages = stages32(use.stages) | kWorkStages, fills = VK_PIPELINE_STAGE_TRANSFER_BIT;
+  VkMemoryBarrier memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
+  memory.srcAccessMask = entry ? access32(use) | kWorkWrites : VkAccessFlags(VK_ACCESS_TRANSFER_WRITE_BIT);
+  memory.dstAccessMask = entry ? VkAccessFlags(VK_ACCESS_TRANSFER_WRITE_BIT) : access32(use) | kWorkReads | kWorkWrites;
+  device.vk.CmdPipelineBarrier(commandBuffer, entry ? stages : fills, entry ? fills : stages, 0, 1, &memory, 0, nullptr,
+                               0, nullptr);
+}
+
 std::byte* Recorder::constants() const {
   const auto slot = acquire();
   return slot ? reinterpret_cast<std::byte*>(constants_.mapped()) + *slot * passes_.constantsBytes : nullptr;

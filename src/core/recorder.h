@@ -71,6 +71,9 @@ inline bool sameTarget(const GpgpTargetInfo& a, const GpgpTargetInfo& b) {
          a.depthTest == b.depthTest && (!a.depthTest || a.depthCompare == b.depthCompare);
 }
 
+/// A barrier between the engine's use of buffers and fills of gpgp: before those (entry), or after them.
+void recordFillBarrier(const Device& device, VkCommandBuffer commandBuffer, const GpgpAccess& use, bool entry);
+
 class Recorder : public Object {
 public:
   ~Recorder() override;

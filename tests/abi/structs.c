@@ -5,6 +5,7 @@
 #define GPGP_SIZE_IS(Type, bytes) typedef char sizeOf##Type[sizeof(Type) == (bytes) ? 1 : -1]
 GPGP_SIZE_IS(GpgpAxiom, 96);
 GPGP_SIZE_IS(GpgpInstance, 96);
+GPGP_SIZE_IS(GpgpCompactInstance, 32);
 GPGP_SIZE_IS(GpgpVisibilityDraw, 64);
 GPGP_SIZE_IS(GpgpTriangleSize, 12);
 GPGP_SIZE_IS(GpgpResult, 4);
@@ -31,6 +32,12 @@ GpgpStructureType useEveryStruct(void) {
   GPGP_USE(GpgpSpawnerCreateInfo, GPGP_SPAWNER_CREATE_INFO_INIT);
   GPGP_USE(GpgpSpawnInfo, GPGP_SPAWN_INFO_INIT);
   GPGP_USE(GpgpSpawnReport, GPGP_SPAWN_REPORT_INIT);
+  GPGP_USE(GpgpEvaluatorCreateInfo, GPGP_EVALUATOR_CREATE_INFO_INIT);
+  GPGP_USE(GpgpEvaluationInfo, GPGP_EVALUATION_INFO_INIT);
+  GPGP_USE(GpgpEvaluationResult, GPGP_EVALUATION_RESULT_INIT);
+  GPGP_USE(GpgpTileSetCreateInfo, GPGP_TILE_SET_CREATE_INFO_INIT);
+  GPGP_USE(GpgpTileInfo, GPGP_TILE_INFO_INIT);
+  GPGP_USE(GpgpTileSetReport, GPGP_TILE_SET_REPORT_INIT);
   GPGP_USE(GpgpLsystemSource, GPGP_LSYSTEM_SOURCE_INIT);
   GPGP_USE(GpgpLsystemCreateInfo, GPGP_LSYSTEM_CREATE_INFO_INIT);
   GPGP_USE(GpgpLsystemRecorderCreateInfo, GPGP_LSYSTEM_RECORDER_CREATE_INFO_INIT);

@@ -6,7 +6,7 @@
 #
 #   symbols_test.sh NM INCLUDE_DIR TEST_DIR KIND LIBRARY HEADER...
 #
-# KIND: run-time, compiler or text; HEADER: whose functions of that kind LIBRARY must have (core spawn vector ...).
+# KIND: run-time, compiler, evaluator or text; HEADER: whose functions of that kind LIBRARY must have (core spawn vector ...).
 set -euo pipefail
 nm=$1 include=$2 tests=$3 kind=$4 library=$5
 shift 5

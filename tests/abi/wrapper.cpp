@@ -16,6 +16,7 @@ static_assert(isHandle<gpgp::Drawing>() && isHandle<gpgp::GlyphSet>() && isHandl
 static_assert(isHandle<gpgp::Atlas>() && isHandle<gpgp::AtlasRecorder>());
 static_assert(isHandle<gpgp::GeometrySet>() && isHandle<gpgp::VisibilityRecorder>() && isHandle<gpgp::CameraHistory>());
 static_assert(isHandle<gpgp::GrammarBuilder>());
+static_assert(isHandle<gpgp::Evaluator>() && isHandle<gpgp::Evaluation>());
 static_assert(isHandle<gpgp::Font>() && isHandle<gpgp::Shaper>() && isHandle<gpgp::Layout>());
 static_assert(!std::is_copy_constructible_v<gpgp::Blob> && std::is_nothrow_move_constructible_v<gpgp::Blob>);
 static_assert(!std::is_convertible_v<gpgp::Grammar, gpgp::Drawing>);
@@ -151,6 +152,31 @@ GpgpResult useVector(GpgpContext context, const GpgpFrame& frame, VkCommandBuffe
   return canvas->report().code();
 }
 
+GpgpResult useTiles(GpgpContext context, const GpgpFrame& frame, VkCommandBuffer cmd) {
+  auto set = gpgp::TileSet::create(context, gpgp::init<GpgpTileSetCreateInfo>());
+  const auto stride = gpgp::tileStride(nullptr, nullptr);
+  if (!set || !stride) return set.code();
+  GpgpTile tile = 0;
+  if (const GpgpResult code = set->record(cmd, frame, gpgp::init<GpgpTileInfo>(), tile)) return code;
+  if (const auto range = set->range(tile); !range) return range.code();
+  if (const GpgpResult code = set->trim(tile, 1)) return code;
+  if (const GpgpResult code = set->recordFree(cmd, frame, tile)) return code;
+  return set->report().code();
+}
+
+GpgpResult useEvaluator() {
+  auto evaluator = gpgp::Evaluator::create(gpgp::init<GpgpEvaluatorCreateInfo>());
+  if (!evaluator) return evaluator.code();
+  auto evaluation = evaluator->evaluation();
+  if (!evaluation) return evaluation.code();
+  uint32_t count = 0;
+  if (const GpgpResult code = evaluator->terminals(count, nullptr)) return code;
+  if (const GpgpResult code = evaluator->starts(count, nullptr)) return code;
+  if (const auto start = evaluator->start("house"); !start) return start.code();
+  if (const GpgpResult code = evaluation->derive(gpgp::init<GpgpEvaluationInfo>())) return code;
+  return evaluation->result().code();
+}
+
 GpgpResult useText() {
   auto font = gpgp::Font::create(gpgp::init<GpgpFontCreateInfo>());
   auto shaper = gpgp::Shaper::create();
@@ -209,6 +235,8 @@ GpgpResult useEverything(const GpgpContextCreateInfo& info, VkCommandBuffer cmd)
   if (const GpgpResult code = useLsystem(*context, frame, cmd)) return code;
   if (const GpgpResult code = useGrammarBuilder()) return code;
   if (const GpgpResult code = useVector(*context, frame, cmd)) return code;
+  if (const GpgpResult code = useEvaluator()) return code;
+  if (const GpgpResult code = useTiles(*context, frame, cmd)) return code;
   if (const GpgpResult code = useText()) return code;
   if (const GpgpResult code = useAtlas(*context, frame, cmd)) return code;
   return useVisibility(*context, frame, cmd);

@@ -29,6 +29,7 @@ struct GlbTriangle {
 struct Glb {
   nlohmann::json model;
   std::vector<GlbTriangle> triangles;
+  std::vector<nlohmann::json> placed; ///< nodes, one for each instance of EXT_mesh_gpu_instancing
 };
 
 class GlbReader {
@@ -78,6 +79,20 @@ private:
   }
   void addNode(const nlohmann::json& node, const std::string& name) {
     if (!node.contains("mesh")) return;
+    if (!node.contains("extensions")) return addMesh(node, name);
+    const auto& instancing = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+    const auto attribute = [&](const char* key) { return glb_.model["accessors"][instancing[key].get<size_t>()]; };
+    const auto translations = attribute("TRANSLATION"), rotations = attribute("ROTATION"), scales = attribute("SCALE");
+    for (size_t i = 0; i < translations["count"].get<size_t>(); ++i) {
+      nlohmann::json placed = node;
+      placed["translation"] = vector<3>(translations, i);
+      placed["rotation"] = vector<4>(rotations, i);
+      placed["scale"] = vector<3>(scales, i);
+      glb_.placed.push_back(placed);
+      addMesh(placed, name);
+    }
+  }
+  void addMesh(const nlohmann::json& node, const std::string& name) {
     const auto translation = node.value("translation", Vector{0, 0, 0}), scale = node.value("scale", Vector{1, 1, 1});
     const auto rotation = node.value("rotation", std::array<double, 4>{0, 0, 0, 1});
     const auto& primitive = glb_.model["meshes"][node["mesh"].get<size_t>()]["primitives"][0];

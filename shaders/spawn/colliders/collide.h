@@ -41,12 +41,15 @@ struct ColliderSet {
   const Collider* colliders;
   const uint* cells; // first collider of each
   uint cellMask;
-  uint levels; // bit set of those in use
-  uint linked; // colliders that can be found
+  uint levels;                   // bit set of those in use
+  uint linked;                   // colliders that can be found
+  const Collider* own = nullptr; // those of this phase, numbered from linked on
 };
 inline ColliderBox colliderBox(const ColliderSet& set, uint i) { return set.colliders[i].box; }
 inline uint colliderTag(const ColliderSet& set, uint i) { return set.colliders[i].tag; }
-inline uint colliderBefore(const ColliderSet& set, uint i) { return set.colliders[i].before; }
+inline uint colliderBefore(const ColliderSet& set, uint i) {
+  return i < set.linked ? set.colliders[i].before : set.own[i - set.linked].before;
+}
 inline uint colliderNext(const ColliderSet& set, uint i) { return set.colliders[i].next; }
 inline uint firstInCell(const ColliderSet& set, uint cell) { return set.cells[cell & set.cellMask]; }
 inline uint usedLevels(const ColliderSet& set) { return set.levels; }

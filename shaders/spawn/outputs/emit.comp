@@ -6,7 +6,9 @@
 #include "spawn/outputs/regions.glsl"
 layout(local_size_x = 64) in;                       // kSpawnGroupSize
 layout(constant_id = 0) const bool ordered = false; // order[] says which record comes where
+layout(constant_id = 1) const bool compact = false; // GpgpCompactInstance, two uvec4
 #include "spawn/shared/shape.h"
+#include "spawn/outputs/compact.h"
 
 /// Where the record goes that comes at `place` of all.
 uint placeOf(uint place, uint bucket) {
@@ -28,6 +30,14 @@ void main() {
     const uint place = placeOf(at, bucket);
     if (place >= record.instanceCapacity) continue;
     const uint axiom = s.axiom * 6;
+    if (compact) {
+      const CompactInstance made =
+          compactInstance(s, uintBitsToFloat(axioms[axiom]), uintBitsToFloat(axioms[axiom + 1]),
+                          uintBitsToFloat(axioms[axiom + 2]), terminal[kNodeArgument]);
+      instances[place * 2] = made.first;
+      instances[place * 2 + 1] = made.second;
+      continue;
+    }
     for (uint row = 0; row < 3; ++row)
       instances[place * 6 + row] = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + row])));
     instances[place * 6 + 3] = uvec4(bucket, shapeType(s), axioms[axiom + 4].x, terminal[kNodeArgument]);

@@ -20,7 +20,7 @@ void writeDraw(uint bucket, uint start, uint count, bool setStart) {
     draws[draw + 3] = start * 4;
   } else {
     draws[draw + 1] = count;
-    if (setStart) draws[draw + 4] = start;
+    if (setStart) draws[draw + 4] = start + record.firstInstance;
   }
 }
 

@@ -101,6 +101,7 @@ struct SpawnConstants {
   uint leftTurns;      // of leaving one for each invocation
   uint recordsAtOnce;  // that a workgroup makes vertices of, at most kSpawnGroupSize
   uint one;            // 1, which no compiler knows
+  uint firstInstance;  // added to what draws begin with
 };
 
 // What becomes of terminals.

@@ -209,9 +209,9 @@ Outcome spawnLsystem(const LsystemOptions& options, const CommonOptions& common)
   if (!options.out.empty()) {
     const spawn::Graph names = namesOf(table);
     if (places.empty())
-      writeGlb(options.out, names, {written, {}, {}}, options.nodes);
+      writeGlb(options.out, names, {written, {}, {}}, options.instances);
     else
-      writeGlb(options.out, names, {{}, mesh.vertices, mesh.indices}, false);
+      writeGlb(options.out, names, {{}, mesh.vertices, mesh.indices}, GlbInstances::triangles);
   }
 
   double rewriting = 0, turtle = 0;

@@ -1,6 +1,7 @@
 // `gpgp spawn` for L-systems (.lsys): derives on the device and compares with the CPU reference.
 #pragma once
 #include "cli/shared/common.h"
+#include "cli/spawn/spawned_gltf.h"
 
 #include <gpgp/lsystem.h>
 
@@ -19,7 +20,7 @@ struct LsystemOptions {
   std::string image, out;
   Size imageSize;
   float yaw = 0, pitch = 0, zoom = 1;
-  bool nodes = false;
+  GlbInstances instances = GlbInstances::triangles;
 };
 
 /// Whether a file is one by its name.

@@ -38,11 +38,15 @@ struct SpawnOptions {
   float yaw = 35, pitch = 25, zoom = 1;
   uint32_t maxInstances = 0, maxShapes = 0, maxDepth = 0, maxColliders = 0, slice = 0;
   std::string schedule = "default", output = "instances", matching = "off";
-  bool sorted = false, nodes = false, string = false;
+  bool sorted = false, nodes = false, instanced = false, string = false;
   uint32_t maxModules = 0;
   uint32_t maxFaces = 0, maxVertices = 0, maxGeometry = 0, maxWork = 0;
   spawn::Heuristics heuristics;
 };
+
+GlbInstances glbInstances(const SpawnOptions& options) {
+  return options.instanced ? GlbInstances::instanced : options.nodes ? GlbInstances::nodes : GlbInstances::triangles;
+}
 
 /// The kernel that --schedule names: none for the interpreter.
 struct Chosen {
@@ -267,11 +271,12 @@ bool hasDynamicTerminals(const spawn::Graph& graph) {
 Outcome spawnFile(const SpawnOptions& options, const CommonOptions& common) {
   if (options.grammars.size() > 1) throw Usage("a .cga file is derived alone; it imports others itself");
   if (!options.set.empty()) throw Usage("attributes of .cga files are set by --attr NAME=VALUE, not by --set");
-  if (options.output != "instances" || options.sorted || options.nodes || options.schedule != "default" ||
-      options.repeat > 1 || options.maxInstances || options.maxColliders || options.slice)
-    throw Usage(
-        "--output, --sorted, --out-nodes, --schedule, --repeat, --slice, --max-instances and --max-colliders are "
-        "for grammars that derive on the GPU");
+  if (options.output != "instances" || options.sorted || options.nodes || options.instanced ||
+      options.schedule != "default" || options.repeat > 1 || options.maxInstances || options.maxColliders ||
+      options.slice)
+    throw Usage("--output, --sorted, --out-nodes, --instanced, --schedule, --repeat, --slice, --max-instances and "
+                "--max-colliders are "
+                "for grammars that derive on the GPU");
   (void)common;
   CgaOptions cga;
   cga.file = options.grammars[0];
@@ -325,7 +330,7 @@ Outcome spawnLsystem(const SpawnOptions& options, const CommonOptions& common) {
   own.yaw = options.yaw;
   own.pitch = options.pitch;
   own.zoom = options.zoom;
-  own.nodes = options.nodes;
+  own.instances = glbInstances(options);
   return spawnLsystem(own, common);
 }
 
@@ -464,7 +469,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     throw Failure(joined(options.grammars) + ": " + statusName(report.base.status) +
                   ": the device ended loops of a shader before their time, and what it derived is wrong");
   if (!options.image.empty()) paint(options, triangles, graph);
-  if (!options.out.empty()) writeGlb(options.out, graph, {instances, allVertices, allIndices}, options.nodes);
+  if (!options.out.empty()) writeGlb(options.out, graph, {instances, allVertices, allIndices}, glbInstances(options));
   const bool exceeded = report.base.status == GPGP_BUDGET_EXCEEDED;
   const bool whole = !report.droppedShapes && report.collidersKept == report.colliders &&
                      report.unfinishedShapes == reference.result.unfinishedShapes;
@@ -647,6 +652,11 @@ Work addSpawn(CLI::App& app) {
       ->add_flag("--out-nodes", options->nodes,
                  "There, a node for each instance that one can place, below its terminal's; they share meshes")
       ->needs(out);
+  command
+      ->add_flag("--instanced", options->instanced,
+                 "There, one node for all instances of a terminal and shape, by EXT_mesh_gpu_instancing")
+      ->needs(out)
+      ->excludes("--out-nodes");
   addSize(*command, "--image-size", options->imageSize, "Size of that picture (default 1280x720)")->needs(image);
   command
       ->add_option("--max-instances", options->maxInstances,

@@ -85,8 +85,10 @@ public:
     return static_cast<int>(model_.materials.size()) - 1;
   }
   int addMesh(const std::string& name, int material, const Mesh& mesh) {
-    const int vertices = addView(mesh.vertices.data(), mesh.vertices.size() * sizeof(UnitVertex), true);
-    const int indices = addView(mesh.indices.data(), mesh.indices.size() * sizeof(uint32_t), false);
+    const int vertices = addView(mesh.vertices.data(), mesh.vertices.size() * sizeof(UnitVertex), sizeof(UnitVertex),
+                                 TINYGLTF_TARGET_ARRAY_BUFFER);
+    const int indices =
+        addView(mesh.indices.data(), mesh.indices.size() * sizeof(uint32_t), 0, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
     tinygltf::Primitive primitive;
     const size_t count = mesh.vertices.size();
     primitive.attributes["POSITION"] = addAccessor(vertices, offsetof(UnitVertex, position), TINYGLTF_TYPE_VEC3, count);
@@ -127,6 +129,33 @@ public:
     model_.nodes.push_back(std::move(node));
   }
 
+  /// A node with a mesh in many places.
+  void addInstances(int parent, const std::string& name, int mesh, const std::vector<Placement>& places) {
+    std::vector<glm::vec3> translations, scales;
+    std::vector<glm::vec4> rotations;
+    for (const Placement& at : places) {
+      translations.push_back(at.translation);
+      rotations.push_back({at.rotation.x, at.rotation.y, at.rotation.z, at.rotation.w});
+      scales.push_back(at.scale);
+    }
+    tinygltf::Value::Object attributes;
+    const auto add = [&](const char* attribute, const auto& values, int type) {
+      const int view = addView(values.data(), values.size() * sizeof values[0], 0, 0);
+      attributes[attribute] = tinygltf::Value(addAccessor(view, 0, type, values.size()));
+    };
+    add("TRANSLATION", translations, TINYGLTF_TYPE_VEC3);
+    add("ROTATION", rotations, TINYGLTF_TYPE_VEC4);
+    add("SCALE", scales, TINYGLTF_TYPE_VEC3);
+    tinygltf::Node node;
+    node.name = name;
+    node.mesh = mesh;
+    node.extensions[kInstancing] =
+        tinygltf::Value(tinygltf::Value::Object{{"attributes", tinygltf::Value(std::move(attributes))}});
+    model_.nodes[static_cast<size_t>(parent)].children.push_back(static_cast<int>(model_.nodes.size()));
+    model_.nodes.push_back(std::move(node));
+    model_.extensionsUsed = model_.extensionsRequired = {kInstancing};
+  }
+
   void write() {
     if (!bytes_.empty()) model_.buffers.emplace_back().data = std::move(bytes_);
     std::ostringstream stream;
@@ -137,15 +166,18 @@ public:
   }
 
 private:
-  int addView(const void* data, size_t size, bool vertices) {
+  static constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+
+  /// target: or 0.
+  int addView(const void* data, size_t size, size_t stride, int target) {
     if (bytes_.size() + size > 0xf0000000u)
       throw Failure(file_.string() + ": more triangles than a glTF binary file holds (4 GiB)");
     tinygltf::BufferView& view = model_.bufferViews.emplace_back();
     view.buffer = 0;
     view.byteOffset = bytes_.size();
     view.byteLength = size;
-    if (vertices) view.byteStride = sizeof(UnitVertex);
-    view.target = vertices ? TINYGLTF_TARGET_ARRAY_BUFFER : TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
+    view.byteStride = stride;
+    view.target = target;
     bytes_.resize(bytes_.size() + size);
     std::memcpy(bytes_.data() + view.byteOffset, data, size);
     return static_cast<int>(model_.bufferViews.size()) - 1;
@@ -193,7 +225,8 @@ void addVertices(std::vector<Mesh>& meshes, const Spawned& spawned) {
 }
 } // namespace
 
-void writeGlb(const std::filesystem::path& file, const spawn::Graph& graph, const Spawned& spawned, bool perInstance) {
+void writeGlb(const std::filesystem::path& file, const spawn::Graph& graph, const Spawned& spawned,
+              GlbInstances instances) {
   std::vector<UnitShape> shapes;
   for (uint32_t shape = 0; shape <= GPGP_SHAPE_SPHERE; ++shape) shapes.push_back(unitShape(shape));
   std::vector<Mesh> meshes(graph.terminals.size());
@@ -202,7 +235,7 @@ void writeGlb(const std::filesystem::path& file, const spawn::Graph& graph, cons
     addVertices(meshes, spawned);
   } else {
     for (const GpgpInstance& instance : spawned.instances) {
-      if (perInstance && placementOf(instance))
+      if (instances != GlbInstances::triangles && placementOf(instance))
         own.at(instance.terminal).push_back(&instance);
       else
         meshes.at(instance.terminal).add(shapes.at(instance.shape), instance);
@@ -216,6 +249,7 @@ void writeGlb(const std::filesystem::path& file, const spawn::Graph& graph, cons
     const int node = writer.addNode(name, meshes[t].indices.empty() ? -1 : writer.addMesh(name, material, meshes[t]));
     meshes[t] = {};
     std::map<uint32_t, int> units; // meshes by shape
+    std::map<uint32_t, std::vector<Placement>> places;
     for (const GpgpInstance* instance : own[t]) {
       const auto [unit, isNew] = units.try_emplace(instance->shape);
       if (isNew) {
@@ -223,8 +257,13 @@ void writeGlb(const std::filesystem::path& file, const spawn::Graph& graph, cons
         mesh.add(shapes.at(instance->shape));
         unit->second = writer.addMesh(name + " " + spawn::shapeName(instance->shape), material, mesh);
       }
-      writer.addInstance(node, unit->second, *placementOf(*instance));
+      if (instances == GlbInstances::instanced)
+        places[instance->shape].push_back(*placementOf(*instance));
+      else
+        writer.addInstance(node, unit->second, *placementOf(*instance));
     }
+    for (const auto& [shape, all] : places)
+      writer.addInstances(node, name + " " + spawn::shapeName(shape), units.at(shape), all);
   }
   writer.write();
 }

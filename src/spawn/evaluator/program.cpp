@@ -24,7 +24,7 @@ static_assert(offsetof(Shape, axisY) == offsetof(Shape, axisX) + 12 &&
 
 /// Terms of the parameter at a word; index: its place among the operator's. Returns where they are, or kNoTerms where
 /// they do not go from left to right.
-uint32_t addTerms(std::vector<Term>& terms, const uint32_t* words, uint32_t at, uint32_t index) {
+uint32_t addTerms(std::pmr::vector<Term>& terms, const uint32_t* words, uint32_t at, uint32_t index) {
   const size_t first = terms.size();
   uint32_t draws = index << kDrawsOfParameter;
   if (words[at] == kParameterAttribute) {
@@ -120,8 +120,8 @@ void simplifyDivision(Program& program, Step& step, const uint32_t* words) {
 }
 } // namespace
 
-Program decode(const uint32_t* words) {
-  Program program;
+Program decode(const uint32_t* words, std::pmr::memory_resource* memory) {
+  Program program(memory);
   const uint32_t nodes = words[kHeaderSections + 2 * kSectionNodes];
   program.steps.resize(1 + nodes);
   program.terms.resize(1); // 0 is none

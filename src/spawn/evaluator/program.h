@@ -2,6 +2,7 @@
 #pragma once
 #include "spawn/derive/interpret.h"
 
+#include <memory_resource>
 #include <vector>
 
 namespace gpgp::spawn {
@@ -63,16 +64,21 @@ struct Step {
   float total = 0;             ///< kChoose: of all chances; kDivide: of fixed lengths
 };
 
+/// It may be moved, but not copied: steps point at ways, and ways at steps.
 struct Program {
-  std::vector<Step> steps; ///< the first one discards, then the nodes
-  std::vector<Way> ways;
-  std::vector<Term> terms;
+  explicit Program(std::pmr::memory_resource* memory) : steps(memory), ways(memory), terms(memory) {}
+  Program(Program&&) = default;
+  Program(const Program&) = delete;
+
+  std::pmr::vector<Step> steps; ///< the first one discards, then the nodes
+  std::pmr::vector<Way> ways;
+  std::pmr::vector<Term> terms;
 
   const Step* at(uint32_t node) const {
     return node ? &steps[1 + (node - shader::kHeaderSize) / shader::kNodeSize] : steps.data();
   }
 };
 
-Program decode(const uint32_t* words);
+Program decode(const uint32_t* words, std::pmr::memory_resource* memory);
 
 } // namespace gpgp::spawn

@@ -12,7 +12,8 @@ struct SpawnerSizes {
   uint32_t maxShapes = 0, maxTerminals = 0, maxColliders = 0, maxHostAxioms = 0;
   uint32_t rounds = 0; ///< of a phase
   bool ordered = false;
-  VertexLayout layout; ///< of vertices; without a stride it writes instances
+  bool compact = false; ///< GpgpCompactInstance
+  VertexLayout layout;  ///< of vertices; without a stride it writes instances
 
   bool vertices() const { return layout.strideWords != 0; }
   uint32_t phases() const { return maxColliders ? shader::kMaxPhases : 1; }

@@ -62,7 +62,7 @@ void addPlace(PassBuilder& b) {
 }
 
 void addEmit(PassBuilder& b) {
-  const uint32_t emit = b.list.add(core::ShaderDesc{"emit", spawn_emit, {b.sizes.ordered}, 1});
+  const uint32_t emit = b.list.add(core::ShaderDesc{"emit", spawn_emit, {b.sizes.ordered, b.sizes.compact}, 2});
   b.list
       .dispatchIndirect("emit", emit,
                         {{shader::kBindGraph, read},

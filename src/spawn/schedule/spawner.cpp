@@ -16,6 +16,8 @@ namespace {
 // The shaders read and write these as uvec4[6].
 static_assert(sizeof(GpgpAxiom) == 96 && offsetof(GpgpAxiom, size) == 48 && offsetof(GpgpAxiom, id) == 64);
 static_assert(sizeof(GpgpInstance) == 96 && offsetof(GpgpInstance, bucket) == 48 && offsetof(GpgpInstance, size) == 80);
+static_assert(sizeof(GpgpCompactInstance) == 32 && offsetof(GpgpCompactInstance, scale) == 16 &&
+              offsetof(GpgpCompactInstance, rotation) == 24);
 static_assert(sizeof(VkDrawIndexedIndirectCommand) == 4 * shader::kDrawWords);
 
 /// Shared memory of derive.glsl for each invocation: a parent's fan, two sums.
@@ -62,6 +64,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   sizes.maxHostAxioms = info.maxHostAxioms;
   sizes.rounds = info.maxRounds ? info.maxRounds : context.device.software ? kSoftwareRounds : kDefaultRounds;
   sizes.ordered = info.flags & GPGP_SPAWNER_ORDERED;
+  sizes.compact = info.flags & GPGP_SPAWNER_COMPACT;
   sizes.layout = layout;
   spawner->maxDepth_ = info.maxDepth ? info.maxDepth : kDefaultDepth;
   spawner->roundsGiven_ = info.maxRounds != 0;
@@ -126,11 +129,12 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   const bool inOrder = sizes_.ordered && !counts;
   // One bucket is sorted as it is.
   const bool sorted =
-      !vertices() && (inOrder || (!counts && !regions && info.draws.buffer && grammar.graph.buckets > 1));
+      !vertices() &&
+      (inOrder || (!counts && !regions && (sizes_.compact || (info.draws.buffer && grammar.graph.buckets > 1))));
   shader::SpawnConstants constants{};
   constants.axiomCount = info.axiomCount;
   constants.readsAxiomCounter = info.axiomCounter.buffer ? 1 : 0;
-  constants.instanceCapacity = elementsIn<GpgpInstance>(info.instances);
+  constants.instanceCapacity = static_cast<uint32_t>(info.instances.buffer ? info.instances.size / instanceBytes() : 0);
   constants.drawCapacity = elementsIn<VkDrawIndexedIndirectCommand>(info.draws);
   constants.writeCount = info.count.buffer ? 1 : 0;
   constants.rounds = (phases - 1) * sizes_.phaseStride() + rounds;
@@ -141,11 +145,13 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   constants.maxDepth = maxDepth_;
   constants.spread = fit.spread;
   constants.balances = fit.balances;
-  constants.reports = info.axiomCount && phases == 1 && !vertices() && !counts && !sorted && !inOrder && !regions;
+  constants.reports = info.axiomCount && phases == 1 && !vertices() && !counts && !sorted && !inOrder && !regions &&
+                      !info.firstInstance;
   const Expansion expansion =
       context.device.software ? expansionOf(grammar.turns) : Expansion{shader::kSpawnGroupSize, 1};
   constants.recordsAtOnce = expansion.records;
   constants.one = 1;
+  constants.firstInstance = info.firstInstance;
   if (context.device.software) {
     const TurnsLimit limit = limitTurns(constants, grammar.turns, fit, batches ? fit.groupSize : 0, kernel != nullptr);
     if (!limit) return core::makeError(GPGP_ERROR_UNSUPPORTED, kTooManyTurns, limit.needed, limit.most);

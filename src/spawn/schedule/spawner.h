@@ -32,6 +32,13 @@ public:
   bool takeReport(GpgpSpawnReport& report);
   /// It writes vertices, not instances.
   bool vertices() const { return sizes_.vertices(); }
+  /// Of an instance, in its layout.
+  uint32_t instanceBytes() const {
+    return static_cast<uint32_t>(sizes_.compact ? sizeof(GpgpCompactInstance) : sizeof(GpgpInstance));
+  }
+  bool ordered() const { return sizes_.ordered; }
+  bool compact() const { return sizes_.compact; }
+  const VertexLayout& layout() const { return sizes_.layout; }
 
 private:
   /// That a recording takes where neither the engine nor a tuned kernel says so.

@@ -1,0 +1,147 @@
+/* gpgp evaluator: derives grammars on the CPU, to the same set as the spawn service does on the GPU. It has a library
+ * of its own, libgpgp_evaluator, for collision, navigation, saved games and servers. The library needs neither a device
+ * nor a context: use it with libgpgp, or alone. Nothing in it calls Vulkan.
+ *
+ *   evaluator    A grammar, ready to be derived. Read only: any number of threads may use it.
+ *   evaluation   What was derived from a list of axioms, and memory that the next derivation uses again.
+ *
+ *   gpgpCreateEvaluator -> gpgpCreateEvaluation -> gpgpEvaluate -> gpgpGetEvaluationResult, again for other axioms
+ *
+ * Counts, path keys, seeds, sizes, attributes and hashes are those of the GPU, bit for bit. Transforms, positions and
+ * normals agree to 1e-4 of their size.
+ *
+ * There is no context that could recognise a destroyed handle, so using one is undefined.
+ */
+#ifndef GPGP_EVALUATOR_H
+#define GPGP_EVALUATOR_H
+#include <gpgp/spawn.h>
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct GpgpEvaluator_T* GpgpEvaluator;
+typedef struct GpgpEvaluation_T* GpgpEvaluation;
+
+typedef struct GpgpEvaluatorCreateInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  const char* label; /**< For messages. The string is copied. */
+  /** The grammar: a text (.pga, or .gml with GPGP_COMPILE_STACK_LANGUAGE) or a baked grammar, whose kernels are
+   * ignored. More than one source: they are linked as gpgpLinkGrammars does. Builders belong to libgpgp_compiler: bake
+   * them. */
+  const GpgpGrammarSource* sources;
+  uint32_t sourceCount;                   /**< At least 1. */
+  const GpgpHostAllocator* hostAllocator; /**< NULL: the C++ heap, which the compilation of texts always uses. */
+  const GpgpJobSystem* jobSystem;         /**< NULL: all work runs on the calling thread. The struct is copied. */
+  GpgpMessageFn messageFn;                /**< NULL: messages are dropped. Those of texts go to their sources. */
+  void* messageUserData;
+} GpgpEvaluatorCreateInfo;
+#define GPGP_EVALUATOR_CREATE_INFO_INIT GPGP_INIT(GpgpEvaluatorCreateInfo, GPGP_STRUCTURE_EVALUATOR_CREATE_INFO)
+
+/** Compiles or checks a grammar for the CPU.
+ *  Errors: INVALID_DATA (the messages of the sources say where), INVALID_ARGUMENT, INVALID_STRUCT, UNSUPPORTED,
+ *  OUT_OF_HOST_MEMORY. @threads any @lifetime call; what callbacks use: handle */
+GPGP_API GpgpResult GPGP_CALL gpgpCreateEvaluator(const GpgpEvaluatorCreateInfo* info, GpgpEvaluator* evaluator);
+
+/** Destroys an evaluator. Its evaluations must have been destroyed before. NULL is ignored. @threads handle */
+GPGP_API void GPGP_CALL gpgpDestroyEvaluator(GpgpEvaluator evaluator);
+
+/** Lists the terminals of the grammar, as gpgpGetGrammarTerminals does. @threads any */
+GPGP_API GpgpResult GPGP_CALL gpgpGetEvaluatorTerminals(GpgpEvaluator evaluator, uint32_t* count,
+                                                        GpgpGrammarTerminal* terminals);
+
+/** Lists the starts of the grammar, as gpgpGetGrammarStarts does. @threads any */
+GPGP_API GpgpResult GPGP_CALL gpgpGetEvaluatorStarts(GpgpEvaluator evaluator, uint32_t* count,
+                                                     GpgpGrammarStart* starts);
+
+/** Returns the index of the first start with a name, as gpgpFindGrammarStart does.
+ *  Errors: INVALID_ARGUMENT (there is none), INVALID_HANDLE. @threads any @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpFindEvaluatorStart(GpgpEvaluator evaluator, const char* name, uint32_t* start);
+
+/** Creates an empty evaluation. Errors: INVALID_HANDLE, INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. @threads any */
+GPGP_API GpgpResult GPGP_CALL gpgpCreateEvaluation(GpgpEvaluator evaluator, GpgpEvaluation* evaluation);
+
+/** Destroys an evaluation and all that gpgpGetEvaluationResult points at. NULL is ignored. @threads handle */
+GPGP_API void GPGP_CALL gpgpDestroyEvaluation(GpgpEvaluation evaluation);
+
+/** Asks whether a derivation should end early. Other than 0: yes. It is called on the threads of the job system,
+ * several at a time, at least once every 65536 shapes. */
+typedef uint32_t(GPGP_CALL* GpgpIsCancelledFn)(void* userData);
+
+typedef uint64_t GpgpEvaluationFlags;
+/** Only the report: no instances and no vertices. */
+#define GPGP_EVALUATION_COUNT_ONLY ((GpgpEvaluationFlags)1)
+/** GpgpEvaluatedAxiom::bounds is filled. */
+#define GPGP_EVALUATION_BOUNDS ((GpgpEvaluationFlags)2)
+
+/** Which axioms to derive, and what of them to keep. Colliders meet those of all axioms of one call. Keys and a region
+ *  choose what is kept, never what is derived: both given, a terminal must satisfy both. */
+typedef struct GpgpEvaluationInfo {
+  GpgpStructureType sType;
+  const void* pNext;
+  const GpgpAxiom* axioms;
+  uint32_t axiomCount;
+  GpgpEvaluationFlags flags;
+  const uint32_t (*keys)[2]; /**< Optional. Only terminals with one of these path keys (GpgpInstance::key) are kept. */
+  uint32_t keyCount;
+  const GpgpSpawnBounds* region; /**< Optional. Only terminals whose world-space box touches this one are kept. */
+  /** Optional. The kept instances come with vertices in this layout, as a spawner would write them. */
+  const GpgpVertexLayout* vertices;
+  uint32_t maxDepth; /**< As GpgpSpawnerCreateInfo::maxDepth. 0: 64. */
+  /** Shapes that an axiom may become, terminals included. The derivation of an axiom stops there, at the same shape
+   *  every time. 0: 2^27, at most 2^31. */
+  uint32_t maxShapesPerAxiom;
+  /** The axioms are cut into so many ranges, and each is a job of GpgpJobSystem. The result does not depend on it.
+   *  0: 64 with a job system, else 1. */
+  uint32_t rangeCount;
+  GpgpIsCancelledFn isCancelled; /**< Optional. */
+  void* cancelUserData;
+} GpgpEvaluationInfo;
+#define GPGP_EVALUATION_INFO_INIT GPGP_INIT(GpgpEvaluationInfo, GPGP_STRUCTURE_EVALUATION_INFO)
+
+/** Derives the axioms, and replaces what the evaluation held. It returns when everything is derived. An error about
+ *  the arguments changes nothing; after GPGP_CANCELLED or OUT_OF_HOST_MEMORY the evaluation is empty.
+ *  Errors: INVALID_HANDLE, INVALID_STRUCT, INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. @threads handle @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpEvaluate(GpgpEvaluation evaluation, const GpgpEvaluationInfo* info);
+
+/** What came of one axiom. The order of its terminals is that of a walk depth first, phase after phase. */
+typedef struct GpgpEvaluatedAxiom {
+  GpgpResult status; /**< SUCCESS, or BUDGET_EXCEEDED: the axiom was not derived to its end, or shapes were dropped. */
+  uint32_t instanceCount;        /**< Terminals that were kept. */
+  const GpgpInstance* instances; /**< [instanceCount] */
+  const void* vertices;          /**< 4 for every quad. NULL without GpgpEvaluationInfo::vertices. */
+  uint32_t vertexCount;
+  uint32_t indexCount; /**< vertexCount / 4 * 6, the first of GpgpEvaluationResult::indices, from 0 for this axiom. */
+  GpgpSpawnBounds bounds;                          /**< Around the kept terminals. Only with GPGP_EVALUATION_BOUNDS. */
+  uint32_t terminals;                              /**< All, kept or not. */
+  uint32_t shapes;                                 /**< That were taken up, terminals included. */
+  uint32_t droppedShapes, unfinishedShapes, depth; /**< As in GpgpSpawnReport. */
+  uint32_t keyHash[2]; /**< As in GpgpSpawnReport, of this axiom. Those of axioms add up, modulo 2^32. */
+} GpgpEvaluatedAxiom;
+
+/** All pointers stay valid until the next gpgpEvaluate of the evaluation, or until it is destroyed. */
+typedef struct GpgpEvaluationResult {
+  GpgpStructureType sType;
+  void* pNext;
+  GpgpResult status; /**< SUCCESS, or BUDGET_EXCEEDED where any axiom says so. */
+  uint32_t axiomCount;
+  const GpgpEvaluatedAxiom* axioms; /**< [axiomCount], in the order of GpgpEvaluationInfo::axioms. */
+  const uint32_t* indices;          /**< One pattern for all axioms: 0 1 2 0 2 3, 4 5 6 4 6 7 and so on. */
+  uint32_t indexCount;              /**< Enough for the axiom with the most vertices. */
+  uint64_t instances;               /**< Terminals that were kept. */
+  uint64_t terminals;               /**< All, kept or not. */
+  uint64_t shapes;                  /**< That were taken up, terminals included. */
+  uint64_t colliders;               /**< Shapes that Collider registered. */
+  uint32_t droppedShapes, unfinishedShapes, depth; /**< As in GpgpSpawnReport. */
+  uint32_t keyHash[2];                             /**< As in GpgpSpawnReport: equal to that of the GPU. */
+  uint32_t rangeCount;                             /**< Ranges that were used. */
+} GpgpEvaluationResult;
+#define GPGP_EVALUATION_RESULT_INIT GPGP_INIT(GpgpEvaluationResult, GPGP_STRUCTURE_EVALUATION_RESULT)
+
+/** Returns what the evaluation holds. Errors: INVALID_HANDLE, INVALID_STRUCT. @threads handle */
+GPGP_API GpgpResult GPGP_CALL gpgpGetEvaluationResult(GpgpEvaluation evaluation, GpgpEvaluationResult* result);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
