@@ -1,9 +1,7 @@
 // The client of figure 3.2: sends its poses, and displays at its own rate what it has of the atlas.
 #include "assembly.h"
-#include "display.h"
+#include "figures.h"
 #include "options.h"
-#include "quality.h"
-#include "statistics.h"
 #include "transport.h"
 #include "window.h"
 
@@ -77,7 +75,7 @@ private:
   }
 
   void greet() {
-    const float fieldOfView = static_cast<float>(options_.fieldOfView * 3.14159265358979 / 180);
+    const float fieldOfView = radiansOf(options_.fieldOfView);
     endpoint_->send(write(Hello{world_.hash(), options_.width, options_.height, fieldOfView}), true);
     while (!welcome_ && refusal_.empty() && endpoint_->isConnected() && !interrupted && now() < options_.wait) poll(10);
     if (!refusal_.empty()) throw std::runtime_error("refused: " + refusal_);
@@ -171,18 +169,18 @@ private:
     }
     if (isNew) latency_.add("waiting for a display frame", (begin - arrived_) * 1000);
     begin = now();
-    const bool compares = frame_ && options_.compare && displays_ % options_.compare == 0;
+    const bool compares = frame_ && options_.compare && figures_.displays() % options_.compare == 0;
     const uint32_t flags = (options_.mark ? DisplayRenderer::mark : 0u) | (compares ? DisplayRenderer::compare : 0u);
     const PixelCounts counts = renderer_->render(pose.view, time, flags);
     const double end = now();
+    if (compares) figures_.add(streaming::compare(renderer_->picture(), renderer_->local()));
     if (isNew) latency_.add("display", (end - begin) * 1000);
-    holes_ += counts.holes;
-    accounted_ = accounted_ && counts.geometry == counts.atlas + counts.last + counts.mean + counts.holes;
     if (!frame_) {
-      ++before_;
+      before_.add(counts);
       return;
     }
-    if (displays_++ == 0) firstFrame_ = time;
+    if (figures_.displays() == 0) firstFrame_ = time;
+    figures_.add(counts);
     displayed_.add((end - begin) * 1000);
     const double age = end - frame_->seconds;
     ages_.add(age * 1000);
@@ -190,11 +188,7 @@ private:
       latency_.add("pose to first display", age * 1000);
     }
     recentAges_.emplace_back(time, age);
-    countPixels(counts, pose.view, time);
-    if (!compares) return;
-    const Quality quality = streaming::compare(renderer_->picture(), renderer_->local());
-    psnr_.add(quality.psnr);
-    ssim_.add(quality.ssim);
+    keepWorst(pose.view, time);
   }
 
   /// How old displayed frames were in the last second and a half.
@@ -210,14 +204,9 @@ private:
     pose.latest = static_cast<float>(std::clamp(most * 1.1, 0.02, 1.5));
   }
 
-  void countPixels(const PixelCounts& counts, const View& view, double time) {
-    const double share = counts.geometry ? 100.0 * counts.fallback() / counts.geometry : 0;
-    geometryPixels_ += counts.geometry;
-    lastPixels_ += counts.last;
-    meanPixels_ += counts.mean;
-    unseenPixels_ += counts.unseen;
-    framesWithFallback_ += counts.fallback() > 0;
-    fallback_.add(share);
+  /// The picture with the largest share of fallback shades.
+  void keepWorst(const View& view, double time) {
+    const double share = figures_.lastFallback();
     if (options_.world.out.empty() || share <= worstShare_) return;
     worstShare_ = share;
     worst_ = renderer_->picture();
@@ -229,53 +218,34 @@ private:
     const double streamed = std::max(seconds - firstFrame_, 1e-9);
     const double megabits = static_cast<double>(endpoint_->receivedBytes()) * 8e-6 / seconds;
     const double frames = static_cast<double>(latency_["decoding"].count());
-    const double perCent =
-        geometryPixels_ ? 100.0 * static_cast<double>(lastPixels_ + meanPixels_) / static_cast<double>(geometryPixels_)
-                        : 0;
-    const double withFallback =
-        displays_ ? 100.0 * static_cast<double>(framesWithFallback_) / static_cast<double>(displays_) : 0;
+    const uint64_t displays = figures_.displays();
     latency_.print("latency of a server frame, ms");
     std::printf("%llu displays at %.1f Hz, %.1f ms each (worst %.1f); age of what is shown %.1f ms (worst %.1f)\n",
-                static_cast<unsigned long long>(displays_), static_cast<double>(displays_) / streamed,
-                displayed_.mean(), displayed_.worst(), ages_.mean(), ages_.worst());
+                static_cast<unsigned long long>(displays), static_cast<double>(displays) / streamed, displayed_.mean(),
+                displayed_.worst(), ages_.mean(), ages_.worst());
     std::printf("%.0f server frames at %.1f Hz, %.2f Mbit/s; first one after %.1f s\n", frames, frames / streamed,
                 megabits, firstFrame_);
-    std::printf(
-        "fallback: %.4f %% of pixels (worst frame %.3f %%), in %.1f %% of frames; %llu of %llu pixels were not found "
-        "visible; %llu holes\n",
-        perCent, fallback_.worst(), withFallback, static_cast<unsigned long long>(unseenPixels_),
-        static_cast<unsigned long long>(lastPixels_ + meanPixels_), static_cast<unsigned long long>(holes_));
-    std::printf("against local rendering: PSNR %.2f dB (least %.2f), SSIM %.4f (least %.4f)\n", psnr_.mean(),
-                psnr_.least(), ssim_.mean(), ssim_.least());
+    figures_.print();
     std::printf("%llu parts asked for again, %llu came twice, %llu key frames asked for, %llu messages refused\n",
                 static_cast<unsigned long long>(assembly_.requestedParts()),
                 static_cast<unsigned long long>(assembly_.duplicates()), static_cast<unsigned long long>(refreshes_),
                 static_cast<unsigned long long>(refused_));
     if (!options_.world.json.empty())
-      writeJson(options_.world.json,
-                {{"latencyMilliseconds", latency_.json()},
-                 {"displays", displays_},
-                 {"displaysBeforeFirstFrame", before_},
-                 {"displayHertz", static_cast<double>(displays_) / streamed},
-                 {"displayMilliseconds", displayed_.json()},
-                 {"uploadMilliseconds", upload_.json()},
-                 {"ageMilliseconds", ages_.json()},
-                 {"serverFrames", frames},
-                 {"serverHertz", frames / streamed},
-                 {"megabitsPerSecond", megabits},
-                 {"pixels", geometryPixels_},
-                 {"fallbackPixels", {{"last", lastPixels_}, {"mean", meanPixels_}, {"notFoundVisible", unseenPixels_}}},
-                 {"fallbackPerCent", perCent},
-                 {"fallbackWorstFramePerCent", fallback_.worst()},
-                 {"framesWithFallbackPerCent", withFallback},
-                 {"holes", holes_},
-                 {"psnr", {{"mean", psnr_.mean()}, {"least", psnr_.least()}, {"count", psnr_.count()}}},
-                 {"ssim", {{"mean", ssim_.mean()}, {"least", ssim_.least()}}},
-                 {"partsAskedForAgain", assembly_.requestedParts()},
-                 {"keyFramesAskedFor", refreshes_},
-                 {"messagesRefused", refused_},
-                 {"heldBytes", assembly_.heldBytes()}});
-    if (!options_.world.out.empty() && displays_) {
+      writeJson(options_.world.json, {{"latencyMilliseconds", latency_.json()},
+                                      {"shown", figures_.json()},
+                                      {"displaysBeforeFirstFrame", before_.displays()},
+                                      {"displayHertz", static_cast<double>(displays) / streamed},
+                                      {"displayMilliseconds", displayed_.json()},
+                                      {"uploadMilliseconds", upload_.json()},
+                                      {"ageMilliseconds", ages_.json()},
+                                      {"serverFrames", frames},
+                                      {"serverHertz", frames / streamed},
+                                      {"megabitsPerSecond", megabits},
+                                      {"partsAskedForAgain", assembly_.requestedParts()},
+                                      {"keyFramesAskedFor", refreshes_},
+                                      {"messagesRefused", refused_},
+                                      {"heldBytes", assembly_.heldBytes()}});
+    if (!options_.world.out.empty() && displays) {
       const View view = walkAt(seconds, world_);
       renderer_->render(view, seconds, DisplayRenderer::compare);
       const std::string folder = options_.world.out;
@@ -285,8 +255,9 @@ private:
       writePicture(folder + "/worst_marked.png", worst_.width ? worstMarked_ : renderer_->picture());
     }
     if (frames == 0) std::fprintf(stderr, "streaming_client: no frame came\n");
-    if (holes_ || !accounted_) std::fprintf(stderr, "streaming_client: pixels of geometry were left without a shade\n");
-    return frames > 0 && holes_ == 0 && accounted_;
+    const bool shaded = figures_.allShaded() && before_.allShaded();
+    if (!shaded) std::fprintf(stderr, "streaming_client: pixels of geometry were left without a shade\n");
+    return frames > 0 && shaded;
   }
 
   const Options& options_;
@@ -302,14 +273,14 @@ private:
   FrameAssembly assembly_;
   std::optional<FrameHeader> frame_; ///< what is displayed
   Clock::time_point begin_ = Clock::now();
-  bool changed_ = false, accounted_ = true;
+  bool changed_ = false;
   uint32_t poses_ = 0;
-  uint64_t displays_ = 0, before_ = 0, refused_ = 0, refreshes_ = 0, holes_ = 0;
-  uint64_t geometryPixels_ = 0, lastPixels_ = 0, meanPixels_ = 0, unseenPixels_ = 0, framesWithFallback_ = 0;
+  uint64_t refused_ = 0, refreshes_ = 0;
   double arrived_ = 0, firstFrame_ = 0, worstShare_ = 0, roundTrip_ = 0.3;
   std::deque<std::pair<double, double>> recentAges_;
   Table latency_;
-  Series displayed_, upload_, ages_, fallback_, psnr_, ssim_;
+  Series displayed_, upload_, ages_;
+  DisplayFigures before_, figures_; ///< before the first frame, and since
   Picture worst_, worstMarked_;
 };
 
@@ -345,10 +316,7 @@ int main(int argc, char** argv) {
   app.add_flag("--mark", options.mark, "fallback shades in magenta");
   app.add_flag("--window", options.window, "show the pictures in a window; Escape ends");
   return mainOf(app, argc, argv, [&] {
-    char rest = 0;
-    if (std::sscanf(options.size.c_str(), "%ux%u%c", &options.width, &options.height, &rest) != 2 ||
-        options.width < 16 || options.height < 16 || options.width > 4096 || options.height > 4096)
-      throw std::runtime_error("--size is WIDTHxHEIGHT, 16 to 4096 each");
+    parseSize(options.size, options.width, options.height);
     endOnSignals();
     return Client(options).run();
   });

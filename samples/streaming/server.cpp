@@ -8,7 +8,6 @@
 
 #include <chrono>
 #include <future>
-#include <map>
 
 using namespace streaming;
 
@@ -222,33 +221,10 @@ int main(int argc, char** argv) {
   app.add_option("--rate", options.rate, "frames per second at most")
       ->check(CLI::Range(1.0, 60.0))
       ->capture_default_str();
-  const std::map<std::string, GpgpSamplingMethod> methods = {{"standard", GPGP_SAMPLING_STANDARD},
-                                                             {"conservative", GPGP_SAMPLING_CONSERVATIVE},
-                                                             {"exact", GPGP_SAMPLING_EXACT}};
-  app.add_option("--sampling", options.shading.method, "how visible triangles are found (default: exact)")
-      ->transform(CLI::CheckedTransformer(methods, CLI::ignore_case));
-  const std::map<std::string, Codec> codecs = {{"x264", Codec::x264}, {"zstd", Codec::zstd}};
-  app.add_option("--codec", options.coding.codec, "x264 (default), or zstd: changed tiles without loss")
-      ->transform(CLI::CheckedTransformer(codecs, CLI::ignore_case));
-  app.add_option("--bitrate", options.coding.megabits, "Mbit/s for x264; 0: constant quality (CRF 20)")
-      ->check(CLI::Range(0.0, 1000.0))
-      ->capture_default_str();
   uint32_t side = 2048;
-  app.add_option("--atlas", side, "texels along the atlas's sides, a multiple of 128")
-      ->check(CLI::Range(128, 4096))
-      ->capture_default_str();
-  app.add_option("--texels", options.shading.texelsPerPixel, "texels for each pixel")
-      ->check(CLI::Range(0.01, 16.0))
-      ->capture_default_str();
-  app.add_option("--gutter", options.shading.gutter, "texels around blocks, 0 or 1, against codecs that blur")
-      ->check(CLI::Range(0, 1))
-      ->capture_default_str();
-  app.add_option("--reshade", options.shading.reshade, "shade a block in one of N frames, new and changed ones always")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+  addShadingOptions(app, options.shading, options.coding, side);
   return mainOf(app, argc, argv, [&] {
-    if (side % 128) throw std::runtime_error("--atlas is no multiple of 128");
-    options.shading.atlasWidth = options.shading.atlasHeight = side;
+    setAtlas(options.shading, side);
     options.coding.rate = options.rate;
     endOnSignals();
     return Server(options).run();

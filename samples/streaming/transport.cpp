@@ -13,7 +13,9 @@ namespace {
 constexpr size_t kChannels = 2; // 0: reliable messages; 1: all others
 constexpr int kSocketBytes = 4 << 20;
 
+/// The first thing that anybody needs.
 ENetAddress addressOf(const std::string& name, uint16_t port) {
+  if (enet_initialize() != 0) throw std::runtime_error("ENet does not begin"); // again and again is allowed
   ENetAddress address{};
   address.port = port;
   if (enet_address_set_host(&address, name.c_str()) != 0) throw std::runtime_error("unknown address " + name);

@@ -27,7 +27,7 @@ end() {
   wait "$serverId" || fail "the server ended with $?"
   serverId=
 }
-number() { sed -n "s/^  \"$2\": \([0-9.]*\),\?$/\1/p" "$folder/$1.json"; }
+number() { sed -n "s/^ *\"$2\": \([0-9.]*\),\?$/\1/p" "$folder/$1.json"; }
 
 start --rate 10 --sampling standard --out "$folder"
 "$client" --port "$port" --village 1 --size 128x72 --display 15 --frames 20 --seconds 200 --latency 100 --jitter 10 --loss 5 --compare 20 \
