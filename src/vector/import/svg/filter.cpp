@@ -258,10 +258,13 @@ bool Importer::FilterReader::read(const std::vector<FilterFunction>& functions) 
   return true;
 }
 
-bool Importer::hasFilter(pugi::xml_node node, const State& state) {
-  // One that is not there takes the others with it (Filter Effects 1, chapter 5).
+std::vector<FilterFunction> Importer::filtersOf(pugi::xml_node node, const State& state) {
+  std::vector<FilterFunction> filters;
   for (const FilterFunction& f : state.style.filter) {
-    if (f.kind != FilterFunction::Kind::Reference) continue;
+    if (f.kind != FilterFunction::Kind::Reference) {
+      filters.push_back(f);
+      continue;
+    }
     const std::string shown = "filter '" + f.reference.substr(0, 60) + "' ";
     const std::string rest = ": " + element(node) + " is drawn without it";
     const pugi::xml_node target = document_.find(f.reference);
@@ -272,10 +275,9 @@ bool Importer::hasFilter(pugi::xml_node node, const State& state) {
     else if (std::find(used_.begin(), used_.end(), target) != used_.end())
       reporter_.ignored(document_.place(node), shown + "contains itself" + rest);
     else
-      continue;
-    return false;
+      filters.push_back(f);
   }
-  return !state.style.filter.empty();
+  return filters;
 }
 
 } // namespace gpgp::vector::svg

@@ -149,8 +149,8 @@ bool Importer::readMarker(const std::string& value, pugi::xml_node node, const S
   };
   isOneOf("markerUnits", {"strokeWidth", "userSpaceOnUse"});
   if (trim(target.attribute("markerUnits").value()) != "userSpaceOnUse") marker.scale = state.style.strokeWidth;
-  marker.width = extent(target, {}, "markerWidth", lengths, LengthAxis::X, 3);
-  marker.height = extent(target, {}, "markerHeight", lengths, LengthAxis::Y, 3);
+  marker.width = extent(target, {}, "markerWidth", lengths, LengthAxis::X, 3, nullptr, 0);
+  marker.height = extent(target, {}, "markerHeight", lengths, LengthAxis::Y, 3, nullptr, 0);
   if (!(marker.width > 0 && marker.height > 0 && marker.scale > 0)) return false; // nothing is shown
   const pugi::xml_attribute boxText = target.attribute("viewBox");
   marker.box = parseViewBox(boxText.value());
