@@ -53,7 +53,7 @@ TEST(SvgEqual, MarkersArePlacedAtVertices) {
       {"an angle with its unit", marker(kBox + "orient='0.25turn'", kArrow) + kAngle + "marker-start='url(#m)'/>",
        line + arrowAt(20, 20, 90)},
       {"in units of the stroke's width, from its box",
-       marker("viewBox='0 0 24 24' refX='center' refY='12' markerWidth='3' markerHeight='3'",
+       marker("viewBox='0 0 24 24' refX='12' refY='12' markerWidth='3' markerHeight='3'",
               "<path d='M0 0L24 12L0 24Z' fill='#a00'/>") +
            kAngle + "marker-end='url(#m)'/>",
        line + arrowAt(80, 80, 0)},

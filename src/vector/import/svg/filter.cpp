@@ -106,7 +106,13 @@ Box Importer::FilterReader::subregion(const Primitive& p, const std::vector<uint
   const double x = along("x", LengthAxis::X, whole.left), y = along("y", LengthAxis::Y, whole.top);
   const double w = along("width", LengthAxis::X, whole.right - whole.left);
   const double h = along("height", LengthAxis::Y, whole.bottom - whole.top);
-  return {x, y, x + w, y + h};
+  if (cuts_ || space.b != 0 || space.c != 0 || !(space.a > 0 && space.d > 0)) return {x, y, x + w, y + h};
+  // What is tiled ends between pixels, so that tiles meet without seams.
+  const double sx = space.a * importer.detail_.scale, sy = space.d * importer.detail_.scale;
+  const double ox = space.e * importer.detail_.scale, oy = space.f * importer.detail_.scale;
+  const auto low = [](double v, double s, double o) { return (std::floor(v * s + o + 1e-4) - o) / s; };
+  const auto high = [](double v, double s, double o) { return (std::ceil(v * s + o - 1e-4) - o) / s; };
+  return {low(x, sx, ox), low(y, sy, oy), high(x + w, sx, ox), high(y + h, sy, oy)};
 }
 
 Box Importer::FilterReader::regionOf(const Box& place) const { return cuts_ ? cut(place, region_) : place; }

@@ -137,6 +137,7 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
     if (clipsApart_) clip(node, name, state, nullptr);
   }
   if (mode_ != Mode::Paint) return content(node, name, state, useSize);
+  if (!state.style.filter.empty() && oneOf(name, kShapes) && shapeOf(node, name, state).empty()) return; // not rendered
   grouped(node, name, state, [&](State& own) { content(node, name, own, useSize); });
 }
 

@@ -178,7 +178,9 @@ struct Context {
 
 bool setStrokeWidth(const Context& c) {
   double v = 0;
-  return parseLength(c.value, c.lengths, LengthAxis::Diagonal, v) && v >= 0 && (c.style.strokeWidth = v, true);
+  if (!parseLength(c.value, c.lengths, LengthAxis::Diagonal, v)) return false;
+  c.style.strokeWidth = std::max(v, 0.0); // an error of SVG 1.1, for which librsvg and resvg draw none
+  return true;
 }
 bool setMiterLimit(const Context& c) {
   double v = 0;
@@ -340,9 +342,7 @@ constexpr Word<double> kAnchors[] = {{"start", 0}, {"middle", 0.5}, {"end", 1}};
 constexpr Word<bool> kDirections[] = {{"ltr", false}, {"rtl", true}};
 bool setVertical(const Context& c) {
   const std::string lower = lowered(c.value);
-  return c.style.text.vertical =
-             lower.starts_with("tb") || lower.starts_with("vertical") || lower.starts_with("sideways"),
-         !lower.empty();
+  return c.style.text.vertical = lower.starts_with("tb") || lower.starts_with("vertical"), !lower.empty();
 }
 bool setReference(const Context& c, std::string& reference) {
   return reference = isWord(c.value, "none") ? std::string_view() : c.value, true;
