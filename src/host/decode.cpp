@@ -1,4 +1,4 @@
-// stb_image, for PNG and JPEG in memory.
+// stb_image, for PNG, JPEG and the first picture of a GIF in memory.
 #include "host/picture.h"
 
 #include <cstring>
@@ -12,6 +12,7 @@
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
+#define STBI_ONLY_GIF
 #define STBI_NO_STDIO
 #include <stb/stb_image.h>
 #if defined __GNUC__

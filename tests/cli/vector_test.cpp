@@ -284,6 +284,20 @@ TEST(CliVector, EmbeddedImagesArePainted) {
   EXPECT_EQ(json::parse(result.out, nullptr, false)["unsupported"][0]["element"], "image");
 }
 
+TEST(CliVector, TextHasTheSystemsFontsWhereNoneAreGiven) {
+  const std::string font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+  if (!std::ifstream(font)) GTEST_SKIP() << "fonts-dejavu-core is not there";
+  const TemporaryFile file("text.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='80' height='30'><text x='5' "
+                                       "y='22' font-size='20' font-family='DejaVu Sans'>Text</text></svg>");
+  const TemporaryFile systems("system.png"), given("given.png");
+  const json drawn = gpgpJson({"vector", file.path(), "--out", systems.path()});
+  if (!drawn["unsupported"].empty()) GTEST_SKIP() << "built without fontconfig";
+  gpgpJson({"vector", file.path(), "--font", font, "--out", given.path()});
+  const host::Picture found = host::readPng(systems.path());
+  EXPECT_EQ(found.rgba, host::readPng(given.path()).rgba);
+  EXPECT_GT(std::count(found.rgba.begin(), found.rgba.end(), 255), 30) << "it is blank";
+}
+
 TEST(CliVector, ShrunkImagesKeepTheirPlaces) {
   // Black to 7/8 of the width, then white: each texel is white by the part of it that lies there.
   const auto stepped = [](uint32_t width, uint32_t height, bool wide) {

@@ -669,12 +669,16 @@ TEST(SvgImport, Selectors) {
 TEST(SvgImport, ElementsForOtherReadersAreLeftOut) {
   const std::pair<const char*, bool> cases[] = {{"", true},
                                                 {"systemLanguage='en'", true},
-                                                {"systemLanguage='de, EN-us'", true},
+                                                {"systemLanguage='de, en-US'", true},
+                                                {"systemLanguage='EN'", false}, // as browsers and resvg compare it
                                                 {"systemLanguage='de,fr'", false},
                                                 {"systemLanguage='sven'", false},
                                                 {"systemLanguage=''", false},
                                                 {"requiredExtensions='http://example.org/more'", false},
-                                                {"requiredExtensions=' '", true}};
+                                                {"requiredExtensions=' '", false},
+                                                {"requiredFeatures=''", false},
+                                                {"requiredFeatures='flying'", false},
+                                                {"requiredFeatures='http://www.w3.org/TR/SVG11/feature#Shape'", true}};
   for (const auto& [attributes, shown] : cases) {
     const std::string rect = std::string("<rect width='9' height='9' ") + attributes + "/>";
     const std::string other = "<rect width='5' height='5'/><rect width='6' height='6'/>";
@@ -781,10 +785,11 @@ TEST(SvgImport, WhatIsNotShownIsNoPath) {
   // A gradient without stops paints nothing, though a fallback is named: that is for what is not there.
   EXPECT_TRUE(page("<linearGradient id='g'/><rect width='9' height='9' fill='url(#g) red'/>").drawing.paths.empty());
   EXPECT_EQ(page("<rect width='9' height='9' fill='url(#g) red'/>").drawing.paths.size(), 1u);
-  // One that refers to itself is not there.
-  EXPECT_EQ(
-      page("<linearGradient id='g' href='#g'/><rect width='9' height='9' fill='url(#g) red'/>").drawing.paths.size(),
-      1u);
+  // One that refers to itself has its own stops.
+  EXPECT_EQ(page("<linearGradient id='g' href='#h'><stop/></linearGradient><linearGradient id='h' href='#g'/><rect "
+                 "width='9' height='9' fill='url(#h)'/>")
+                .drawing.paths.size(),
+            1u);
 }
 
 TEST(SvgImport, GroupsFadeAndClip) {
@@ -928,7 +933,7 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<linearGradient id='g' x1='a'><stop/></linearGradient><rect width='9' height='9' fill='url(#g)'/>",
        "E line 2: <linearGradient> has x1 'a', which is no length"},
       {"<pattern id='p'/><rect width='9' height='9' fill='url(#p) red'/>",
-       "W line 2: <rect> fill refers to a pattern without extent; it is not painted"},
+       "W line 2: <rect> fill refers to a pattern without extent; its fallback is used"},
       {"<clipPath id='c' clip-path='url(#c)'/><rect width='9' height='9' clip-path='url(#c)'/>",
        "W line 2: clip-path 'url(#c)' contains itself: <clipPath> is drawn without it"},
       {"<clipPath id='c'>\n<g><path d='M0 0h9v9'/></g></clipPath><rect width='9' height='9' clip-path='url(#c)'/>",
@@ -972,15 +977,15 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<rect width='9' height='9' style='transform:scale(1);transform-origin:1cqw'/>",
        "W line 2: <rect> has transform-origin '1cqw', which is not supported; ignored"},
       {"<radialGradient id='g' r='-1'><stop/></radialGradient><rect width='9' height='9' fill='url(#g)'/>",
-       "E line 2: <radialGradient> has a negative r; ignored"},
+       "E line 2: <radialGradient> has a negative r, which counts as none"},
       {"<radialGradient id='g' fr='-1'><stop/></radialGradient><rect width='9' height='9' fill='url(#g)'/>",
-       "E line 2: <radialGradient> has a negative fr; ignored"},
+       "E line 2: <radialGradient> has a negative fr, which counts as none"},
       {"<linearGradient id='g' gradientTransform='scale(0)'><stop/></linearGradient>\n<rect width='9' height='9' "
        "fill='url(#g)'/>",
        "W line 3: <rect> fill refers to a gradient without extent; it is not painted"},
-      {"<linearGradient id='g' href='#h'/><linearGradient id='h' href='#g'/>\n<rect width='9' height='9' "
-       "fill='url(#g) red'/>",
-       "W line 3: <rect> fill refers to a gradient that refers to itself; its fallback is used"},
+      {"<linearGradient id='g' href='#h'><stop/></linearGradient><linearGradient id='h' href='#g'/>\n<rect width='9' "
+       "height='9' fill='url(#g)'/>",
+       "W line 2: <linearGradient> refers to '#g', which is one of its own templates; ignored"},
       {"<linearGradient id='g' x1='env(a)'><stop/></linearGradient><rect width='9' height='9' fill='url(#g)'/>",
        "W line 2: <linearGradient> has x1 'env(a)', which is not supported; ignored"},
       {"<style>\ng rect::before { fill: red }</style>", "W line 3: style selector 'g rect::before' is not supported"},
@@ -1004,7 +1009,7 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<linearGradient id='g' href='other.svg#g'><stop/></linearGradient>\n<path fill='url(#g)' d='M0 0h9v9'/>",
        "W line 3: <path> fill refers to a gradient that refers to another file, 'other.svg#g', which is not supported"},
       {"<linearGradient id='g' href='#g'><stop/></linearGradient>\n<path fill='url(#g)' d='M0 0h9v9'/>",
-       "W line 3: <path> fill refers to a gradient that refers to itself; it is not painted"},
+       "W line 2: <linearGradient> refers to '#g', which is one of its own templates; ignored"},
       {"<path fill='CanvasText' d='M0 0h9v9'/>",
        "W line 2: <path> has fill 'CanvasText', which is not supported; ignored"},
       {"<style>\nsvg|g {fill:red}</style>", "W line 3: style selector 'svg|g' is not supported"},

@@ -53,7 +53,7 @@ TEST(SvgEqual, MarkersArePlacedAtVertices) {
       {"an angle with its unit", marker(kBox + "orient='0.25turn'", kArrow) + kAngle + "marker-start='url(#m)'/>",
        line + arrowAt(20, 20, 90)},
       {"in units of the stroke's width, from its box",
-       marker("viewBox='0 0 24 24' refX='center' refY='12' markerWidth='3' markerHeight='3'",
+       marker("viewBox='0 0 24 24' refX='12' refY='12' markerWidth='3' markerHeight='3'",
               "<path d='M0 0L24 12L0 24Z' fill='#a00'/>") +
            kAngle + "marker-end='url(#m)'/>",
        line + arrowAt(80, 80, 0)},
@@ -272,8 +272,30 @@ TEST(SvgEqual, TextIsOutlines) {
        "<text x='10' y='40' text-decoration='underline' fill='#a00'>ab<tspan text-decoration='line-through' "
        "fill='#00a'>c</tspan></text>",
        at(10, 40, "fill='#a00'") + at(20, 40, "fill='#a00'") +
-           "<rect x='10' y='41' width='30' height='2' fill='#a00'/>" + at(30, 40, "fill='#00a'") +
-           "<rect x='30' y='35' width='10' height='2' fill='#00a'/>"},
+           "<rect x='10' y='40' width='30' height='2' fill='#a00'/>" + at(30, 40, "fill='#00a'") +
+           "<rect x='30' y='34' width='10' height='2' fill='#00a'/>"},
+      {"lines of what is around, in the text's paint, without gaps",
+       "<g text-decoration='underline' fill='#00a'><text x='10' y='40' letter-spacing='5' fill='#a00'>ab</text></g>",
+       at(10, 40, "fill='#a00'") + at(25, 40, "fill='#a00'") +
+           "<rect x='10' y='40' width='30' height='2' fill='#a00'/>"},
+      {"a part as long as it says", "<text x='10' y='40'>a<tspan textLength='30'>bc</tspan>d</text>",
+       at(10, 40) + at(20, 40) + at(40, 40) + at(60, 40)},
+      {"a part stretched",
+       "<text x='10' y='40'>a<tspan textLength='40' lengthAdjust='spacingAndGlyphs'>bc</tspan>d</text>",
+       at(10, 40) + "<path d='M20 32h16v8h-16zM40 32h16v8h-16z'/>" + at(60, 40)},
+      {"text of another element",
+       "<text x='10' y='40'>a<tref href='#o'/>b</text><defs><text id='o'>x<tspan>y</tspan>"
+       "</text></defs>",
+       at(10, 40) + at(20, 40) + at(30, 40) + at(40, 40)},
+      {"nothing of no size", "<text x='10' y='40'>a<tspan font-size='0'>b</tspan>c</text>", at(10, 40) + at(20, 40)},
+      {"from above", // 4 units to the left of the middle, that of the small letters, is the baseline
+       "<text x='40' y='10' writing-mode='tb'>a<tspan dy='5' dx='2'>b</tspan></text>",
+       at(0, 0, "transform='translate(36 10) rotate(90)'") + at(0, 0, "transform='translate(38 25) rotate(90)'")},
+      {"from above in the middle", "<text x='40' y='50' writing-mode='vertical-rl' text-anchor='middle'>ab</text>",
+       at(0, 0, "transform='translate(36 40) rotate(90)'") + at(0, 0, "transform='translate(36 50) rotate(90)'")},
+      {"from x on along a path",
+       "<path id='p' d='M20 10V90' fill='none'/><text x='10'><textPath href='#p'>ab</textPath></text>",
+       at(0, 0, "transform='translate(20 20) rotate(90)'") + at(0, 0, "transform='translate(20 30) rotate(90)'")},
       {"along a path",
        "<path id='p' d='M20 10V90' fill='none'/><text><textPath href='#p' startOffset='10'>ab</textPath>"
        "</text>",
@@ -299,10 +321,52 @@ TEST(SvgEqual, TextIsOutlines) {
   const auto said = [](const std::string& text) { return written(text).placed; };
   EXPECT_EQ(said("<text><textPath href='#p'>a</textPath></text>"),
             Texts{"test.svg:2:7: warning: <textPath> refers to '#p', which is no shape of this file; it is not drawn"});
-  EXPECT_EQ(said("<text writing-mode='tb'>a</text>"),
-            Texts{"test.svg:2:1: warning: writing-mode is not supported: <text> is drawn without it"});
-  EXPECT_EQ(said("<text>a<tref href='#a'/></text>"), Texts{"test.svg:2:8: warning: <tref> is not supported"});
+  EXPECT_EQ(said("<text>a<tref href='#a'/></text>"),
+            Texts{"test.svg:2:8: warning: <tref> refers to what is not there"});
+  EXPECT_EQ(said("<text><tspan><textPath href='#p'>a</textPath></tspan></text>").size(), 1u);
   EXPECT_EQ(said("<text x='1 a'>ab</text>"), Texts{"test.svg:2:10: error: <text> has x '1 a', which is no length"});
+}
+
+TEST(SvgEqual, DrawingsAreImages) {
+  const std::string inside =
+      "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 20 10'%3E"
+      "%3Cstyle%3Erect%7Bfill:%23a00%7D%3C/style%3E%3Crect id='r' width='10' height='30'/%3E%3C/svg%3E";
+  const std::string image = "<image href=\"" + inside + "\" ", below = "<rect width='5' height='5'/>";
+  const Pair pairs[] = {
+      {"at their own size", image + "x='10' y='20'/>" + below,
+       "<rect x='10' y='20' width='10' height='10' fill='#a00'/>" + below},
+      {"fitted", image + "width='40' height='40'/>" + below,
+       "<rect y='10' width='20' height='20' fill='#a00'/>" + below},
+      {"stretched", image + "width='40' height='40' preserveAspectRatio='none'/>" + below,
+       "<rect width='20' height='40' fill='#a00'/>" + below},
+      {"faded", "<g opacity='.5'>" + image + "width='40' opacity='.5'/></g>",
+       "<rect width='20' height='20' fill='#a00' opacity='.25'/>"},
+      {"found by no one outside", image + "/><use href='#r' x='50'/>" + below,
+       "<rect width='10' height='10' fill='#a00'/>" + below},
+  };
+  for (const Pair& pair : pairs) {
+    SCOPED_TRACE(pair.name);
+    EXPECT_LE(worst(picture(page(pair.with)), picture(page(pair.without))), kSame);
+  }
+  // What refers to a file finds none, and places say that they are inside.
+  EXPECT_EQ(page("<image href='data:image/svg+xml,%3Csvg xmlns=\"http://www.w3.org/2000/svg\"%3E%3Cimage "
+                 "href=\"a.png\"/%3E%3C/svg%3E'/>")
+                .placed,
+            Texts{"test.svg:2:1: image:1:41: warning: <image> is not supported"});
+}
+
+TEST(SvgEqual, TransformsOfAttributesHaveNoUnits) {
+  const std::string start = "<rect width='20' height='20' ";
+  for (const char* wrong : {"translate(20px)", "translate(5%)", "rotate(20deg)", "skew(20)", "translateX(20)",
+                            "TRANSLATE(9)", "inherit", "translate(9) foo(3)"}) {
+    const Import i = page(start + "transform='" + wrong + "'/>");
+    EXPECT_EQ(i.messages.size(), 1u) << wrong;
+    EXPECT_LE(worst(picture(i), picture(page(start + "/>"))), kSame) << wrong;
+  }
+  expectSame({"lists", start + "transform=' translate(20,-1e0),\nscale(2 .5)'/>",
+              "<rect x='20' y='-1' width='40' height='10'/>"});
+  expectSame(
+      {"style sheets may", start + "style='transform:translateX(20px)'/>", "<rect x='20' width='20' height='20'/>"});
 }
 
 TEST(SvgEqual, SelectorsChooseElements) {

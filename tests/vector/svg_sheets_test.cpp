@@ -213,7 +213,8 @@ TEST(SvgSheets, RulesInsideOfOthersAreNamed) {
 TEST(SvgSheets, MarkersThatAreTakenBackAreNotNamed) {
   EXPECT_EQ(page("<g marker-end='url(#m)'><path d='M0 0h9v9' marker='url(#n)' style='marker:none'/></g>").placed,
             Texts());
-  EXPECT_EQ(page("<g marker='url(#m)'><path d='M0 0h9v9' marker-end='none'/></g>").placed.size(), 1u);
+  EXPECT_EQ(page("<g style='marker:url(#m)'><path d='M0 0h9v9' marker-end='none'/></g>").placed.size(), 1u);
+  EXPECT_EQ(page("<path d='M0 0h9v9' marker='url(#m)'/>").placed, Texts()); // a shorthand is no attribute
 }
 
 TEST(SvgSheets, TheyAreBounded) {

@@ -176,7 +176,7 @@ Outcome lottie(const VectorOptions& options, const CommonOptions& common, const 
   VectorImages images;
   images.attach(source);
 #ifdef GPGP_CLI_TEXT
-  SvgText fonts(options.fonts);
+  SvgText fonts(options.fonts, true);
   fonts.attach(source);
 #endif
   const auto begin = std::chrono::steady_clock::now();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 
 namespace gpgp::cli {
 namespace {
@@ -15,17 +16,51 @@ std::string lowered(std::string_view text) {
   return small;
 }
 
-/// "Arial, 'DejaVu Sans'" as names in small letters.
+/// "Arial, 'DejaVu Sans'" as names.
 std::vector<std::string> familiesOf(std::string_view list) {
   std::vector<std::string> names;
   while (!list.empty()) {
     const size_t end = std::min(list.find(','), list.size());
     std::string_view name = list.substr(0, end);
     const size_t first = name.find_first_not_of(" \t\n'\""), last = name.find_last_not_of(" \t\n'\"");
-    if (first != name.npos) names.push_back(lowered(name.substr(first, last + 1 - first)));
+    if (first != name.npos) names.emplace_back(name.substr(first, last + 1 - first));
     list.remove_prefix(std::min(end + 1, list.size()));
   }
   return names;
+}
+
+/// By the words that styles have for it.
+float weightOf(const std::string& style) {
+  static constexpr struct {
+    const char* word;
+    float weight;
+  } kWeights[] = {{"thin", 100},       {"hairline", 100},   {"extralight", 200}, {"extra light", 200},
+                  {"ultralight", 200}, {"demibold", 600},   {"semibold", 600},   {"semi bold", 600},
+                  {"extrabold", 800},  {"extra bold", 800}, {"light", 300},      {"ultrabold", 800},
+                  {"medium", 500},     {"black", 900},      {"heavy", 900},      {"bold", 700}};
+  for (const auto& w : kWeights)
+    if (style.find(w.word) != std::string::npos) return w.weight;
+  return 400;
+}
+
+/// How far a weight is from the one that is wanted (CSS Fonts 4, 5.2): first those on its own side.
+float weightDistance(float wanted, float weight) {
+  constexpr float otherSide = 1000;
+  if (wanted >= 400 && wanted <= 500)
+    return weight >= wanted && weight <= 500 ? weight - wanted
+           : weight < wanted                 ? otherSide + wanted - weight
+                                             : 2 * otherSide + weight - wanted;
+  const bool isOwnSide = wanted < 400 ? weight <= wanted : weight >= wanted;
+  return std::fabs(weight - wanted) + (isOwnSide ? 0 : otherSide);
+}
+
+/// Whether a family's name, in small letters, is what a name of font-family means.
+bool isFamily(const std::string& family, const std::string& wanted) {
+  const auto has = [&family](const char* word) { return family.find(word) != std::string::npos; };
+  if (wanted == "serif") return has("serif") && !has("sans");
+  if (wanted == "sans-serif") return has("sans") && !has("mono");
+  if (wanted == "monospace") return has("mono") || has("courier");
+  return family == wanted;
 }
 
 void check(GpgpResult result) {
@@ -34,7 +69,7 @@ void check(GpgpResult result) {
 
 } // namespace
 
-SvgText::SvgText(const std::vector<std::string>& files) {
+SvgText::SvgText(const std::vector<std::string>& files, bool fromSystem) {
   for (const std::string& file : files) {
     GpgpFontCreateInfo info = init<GpgpFontCreateInfo>();
     info.filePath = file.c_str();
@@ -44,10 +79,12 @@ SvgText::SvgText(const std::vector<std::string>& files) {
     if (!about) throw Failure(file + ": " + about.name());
     const std::string style = lowered(about->style ? about->style : "");
     const auto has = [&style](const char* word) { return style.find(word) != std::string::npos; };
-    faces_.push_back({std::move(*font), *about, lowered(about->family ? about->family : ""), has("bold"),
+    faces_.push_back({std::move(*font), *about, lowered(about->family ? about->family : ""), weightOf(style),
                       has("italic") || has("oblique")});
   }
-  if (faces_.empty()) return;
+  if (files.empty() && fromSystem) system_.emplace();
+  if (system_ && !*system_) system_.reset();
+  if (faces_.empty() && !system_) return;
   Result<Shaper> shaper = Shaper::create();
   if (!shaper) throw Failure(std::string("text cannot be shaped: ") + shaper.name());
   shaper_ = std::move(*shaper);
@@ -56,11 +93,39 @@ SvgText::SvgText(const std::vector<std::string>& files) {
   layout_ = std::move(*layout);
 }
 
-std::vector<GpgpFont> SvgText::chosen(const GpgpSvgTextSpan& span) const {
+std::vector<GpgpFont> SvgText::chosenOfSystem(const GpgpSvgTextSpan& span, std::string_view text) {
+  std::vector<GpgpFont> fonts;
+  for (SystemFont& wanted :
+       system_->find(familiesOf(span.families), span.weight, span.italic != 0, span.language, text)) {
+    auto face = std::find_if(faces_.begin(), faces_.end(), [&](const Face& f) { return f.source == wanted; });
+    if (face == faces_.end()) {
+      GpgpFontCreateInfo info = init<GpgpFontCreateInfo>();
+      std::vector<GpgpFontAxisValue> axes;
+      for (const auto& [tag, value] : wanted.axes) axes.push_back({GPGP_TAG(tag[0], tag[1], tag[2], tag[3]), value});
+      info.filePath = wanted.file.c_str();
+      info.face = wanted.face;
+      info.axes = axes.data();
+      info.axisCount = static_cast<uint32_t>(axes.size());
+      Result<Font> font = Font::create(info);
+      if (!font) continue;
+      const Result<GpgpFontInfo> about = font->info();
+      if (!about) continue;
+      faces_.push_back({std::move(*font), *about, {}, span.weight, span.italic != 0, std::move(wanted)});
+      face = faces_.end() - 1;
+    }
+    fonts.push_back(face->font.get());
+  }
+  return fonts;
+}
+
+std::vector<GpgpFont> SvgText::chosen(const GpgpSvgTextSpan& span, std::string_view text) {
+  if (system_) return chosenOfSystem(span, text);
   const std::vector<std::string> families = familiesOf(span.families);
   const auto rank = [&](const Face& face) { // the smallest first
-    const auto at = std::find(families.begin(), families.end(), face.family) - families.begin();
-    return std::pair(at, (face.bold != (span.weight >= 550)) + 2 * (face.italic != (span.italic != 0)));
+    const auto at = std::find_if(families.begin(), families.end(),
+                                 [&](const std::string& name) { return isFamily(face.family, lowered(name)); });
+    return std::tuple(at - families.begin(), face.italic != (span.italic != 0),
+                      weightDistance(span.weight, face.weight));
   };
   std::vector<const Face*> order;
   for (const Face& face : faces_) order.push_back(&face);
@@ -76,7 +141,7 @@ void SvgText::shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyph
   std::vector<GpgpTextSpan> spans(text.spanCount);
   for (uint32_t i = 0; i < text.spanCount; ++i) {
     const GpgpSvgTextSpan& from = text.spans[i];
-    fonts[i] = chosen(from);
+    fonts[i] = chosen(from, {text.text + from.begin, from.end - from.begin});
     spans[i].begin = from.begin, spans[i].end = from.end;
     GpgpTextStyle& style = spans[i].style;
     style.fonts = fonts[i].data();

@@ -1,24 +1,29 @@
-// The text of an SVG or of an animation, shaped in fonts that were given.
+// The text of an SVG or of an animation, shaped in fonts that were given, or in those of the system.
 #pragma once
+#include "cli/vector/system_fonts.h"
+
 #include <gpgp/text.hpp>
 #include <gpgp/vector.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace gpgp::cli {
 
-/// Takes fonts by the family, weight and slant that the text asks for; then, in their order, the others.
+/// Takes fonts by the family, weight and slant that the text asks for; then, in their order, the others. Of the words
+/// for kinds of families, serif, sans-serif and monospace mean fonts whose names say so.
 class SvgText {
 public:
   /// Throws Failure, which names the file, where one is no font.
-  explicit SvgText(const std::vector<std::string>& files);
+  /// `fromSystem`: where no files are given, the system's fonts are looked for as the text asks for them.
+  explicit SvgText(const std::vector<std::string>& files, bool fromSystem = false);
   SvgText(const SvgText&) = delete; // the source refers to it
   SvgText& operator=(const SvgText&) = delete;
   /// Without fonts, text stays unsupported.
   template <class Source> void attach(Source& source) {
-    if (faces_.empty()) return;
+    if (faces_.empty() && !system_) return;
     source.textFn = shape;
     source.textUserData = this;
   }
@@ -28,12 +33,16 @@ private:
     Font font;
     GpgpFontInfo info;
     std::string family; ///< in small letters
-    bool bold = false, italic = false;
+    float weight = 400;
+    bool italic = false;
+    SystemFont source{}; ///< of one of the system's
   };
   static GpgpResult GPGP_CALL shape(void* userData, const GpgpSvgText* text, GpgpSvgGlyphFn glyphFn, void* glyphData);
   void shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyphData);
-  std::vector<GpgpFont> chosen(const GpgpSvgTextSpan& span) const;
+  std::vector<GpgpFont> chosen(const GpgpSvgTextSpan& span, std::string_view text);
+  std::vector<GpgpFont> chosenOfSystem(const GpgpSvgTextSpan& span, std::string_view text);
 
+  std::optional<SystemFonts> system_;
   std::vector<Face> faces_;
   Shaper shaper_;
   Layout layout_;

@@ -175,7 +175,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   VectorImages images;
   images.attach(source);
 #ifdef GPGP_CLI_TEXT
-  SvgText fonts(options.fonts);
+  SvgText fonts(options.fonts, true);
   fonts.attach(source);
 #endif
   Stages stages{options.stages, {}};
@@ -375,7 +375,9 @@ Work addVector(CLI::App& app) {
       ->check(CLI::IsMember({"flattened", "in-pass"}))
       ->capture_default_str();
 #ifdef GPGP_CLI_TEXT
-  command->add_option("--font", options->fonts, "Font of the drawing's text; may be given several times")
+  command
+      ->add_option("--font", options->fonts,
+                   "Font of the drawing's text; may be given several times (default: the system's fonts)")
       ->check(CLI::ExistingFile)
       ->type_name("FILE");
 #endif

@@ -27,6 +27,10 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
       name = "transform";
       if (trim(value).empty()) value = "none"; // is one, which is no template's
     }
+    if (name == "transform" && value != "none" && !isPlainTransform(value)) {
+      badTransform(node, document_.place(a, 0), a.name(), value);
+      continue;
+    }
     if (isPresentationAttribute(name)) settings.push_back({name, value});
   }
   std::vector<const Declaration*> declared;
@@ -85,6 +89,11 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
     if (!setsSize(s)) apply(s);
 }
 
+void Importer::badTransform(pugi::xml_node node, const Place& place, std::string_view name, std::string_view value) {
+  if (hasUnsupported(value)) return ignored(node, place, "transform", value);
+  reporter_.error(place, element(node) + " has an error in its " + std::string(name) + ", which is ignored");
+}
+
 Affine Importer::transformOf(pugi::xml_node node, const Style& style, const LengthContext& outer,
                              const std::function<Box()>& box) {
   Affine own;
@@ -121,11 +130,7 @@ Affine Importer::transformOf(pugi::xml_node node, const Style& style, const Leng
   }
   Affine listed;
   if (!style.transform.empty() && !parseTransform(style.transform, lengths, listed)) {
-    if (hasUnsupported(style.transform))
-      ignored(node, place, "transform", style.transform);
-    else
-      reporter_.error(place,
-                      element(node) + " has an error in its " + (text ? name : "transform") + ", which is ignored");
+    badTransform(node, place, text ? name : "transform", style.transform);
     listed = {};
   }
   own = own * listed;
@@ -177,7 +182,7 @@ std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const Surface
   const std::string instead = paint.hasFallback ? "its fallback is used" : "it is not painted";
   if (name == "pattern") {
     const GradientChain& chain = chainOf(target);
-    if (chain.cyclic || std::find(used_.begin(), used_.end(), target) != used_.end()) {
+    if (std::find(used_.begin(), used_.end(), target) != used_.end()) {
       reporter_.ignored(document_.place(node), who + " refers to a pattern that contains itself; " + instead);
       return plain(paint.fallback);
     }
@@ -186,15 +191,11 @@ std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const Surface
                                                 std::string(chain.otherFile.substr(0, 60)) +
                                                 "', which is not supported");
     if (auto tiling = tilingOf(chain, surface)) return Ink{{0, 0, 0, 1}, nullptr, nullptr, std::move(tiling)};
-    reporter_.ignored(document_.place(node), who + " refers to a pattern without extent; it is not painted");
-    return std::nullopt;
+    reporter_.ignored(document_.place(node), who + " refers to a pattern without extent; " + instead);
+    return plain(paint.fallback);
   }
   if (oneOf(name, kGradients)) {
     const GradientChain& chain = chainOf(target);
-    if (chain.cyclic) {
-      reporter_.ignored(document_.place(node), who + " refers to a gradient that refers to itself; " + instead);
-      return plain(paint.fallback);
-    }
     if (!chain.otherFile.empty())
       reporter_.warn(document_.place(node), who + " refers to a gradient that refers to another file, '" +
                                                 std::string(chain.otherFile.substr(0, 60)) +

@@ -60,7 +60,8 @@ std::vector<uint8_t> decodeDataUri(std::string_view uri) {
   if (!isWord(uri.substr(0, 5), "data:") || comma == uri.npos) return {};
   const std::string_view head = uri.substr(0, comma), data = uri.substr(comma + 1);
   constexpr std::string_view base64 = ";base64";
-  if (head.size() >= base64.size() && isWord(head.substr(head.size() - base64.size()), base64)) return fromBase64(data);
+  if (head.size() >= base64.size() && isWord(head.substr(head.size() - base64.size()), base64))
+    return fromBase64(percentDecoded(data));
   const std::string text = percentDecoded(data);
   return {text.begin(), text.end()};
 }

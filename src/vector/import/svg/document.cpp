@@ -266,12 +266,12 @@ void Document::resolveNamespaces() {
 Place Document::placeAt(size_t offset) const {
   const auto next = std::lower_bound(newlines_.begin(), newlines_.end(), offset);
   const size_t begin = next == newlines_.begin() ? 0 : *(next - 1) + 1;
-  return {1 + static_cast<size_t>(next - newlines_.begin()), 1 + offset - begin, {}};
+  return {1 + static_cast<size_t>(next - newlines_.begin()), 1 + offset - begin, file_};
 }
 
 Place Document::place(pugi::xml_node node) const {
   const ptrdiff_t name = node.offset_debug(), before = node.type() == pugi::node_pi ? 2 : 1; // "<?" or "<"
-  return name < before ? Place{} : placeAt(static_cast<size_t>(name - before));
+  return name < before ? Place{1, 1, file_} : placeAt(static_cast<size_t>(name - before));
 }
 
 Place Document::placeOf(const char* value, size_t offset) const {

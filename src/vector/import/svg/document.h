@@ -30,6 +30,10 @@ public:
   /// Parses SVG or gzip-compressed SVG in UTF-8, UTF-16 or Latin-1. Errors begin with their "line:column: ".
   core::Result<void> load(std::span<const std::byte> bytes);
 
+  /// Names the file in places: that of a drawing inside another one.
+  void setFile(std::string name) { file_ = std::move(name); }
+  size_t bytes() const { return text_.size(); } ///< of XML
+
   /// The outermost <svg>; empty where there is none.
   pugi::xml_node root() const { return root_; }
   /// Of an element's or processing instruction's first character.
@@ -71,6 +75,7 @@ private:
   void findUnknownEntities();
 
   bool mayBlend_ = false, mayLayer_ = false;
+  std::string file_;
   std::string text_; // the tree points into it
   pugi::xml_document tree_;
   pugi::xml_node root_;

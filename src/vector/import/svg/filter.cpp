@@ -106,7 +106,13 @@ Box Importer::FilterReader::subregion(const Primitive& p, const std::vector<uint
   const double x = along("x", LengthAxis::X, whole.left), y = along("y", LengthAxis::Y, whole.top);
   const double w = along("width", LengthAxis::X, whole.right - whole.left);
   const double h = along("height", LengthAxis::Y, whole.bottom - whole.top);
-  return {x, y, x + w, y + h};
+  if (cuts_ || space.b != 0 || space.c != 0 || !(space.a > 0 && space.d > 0)) return {x, y, x + w, y + h};
+  // What is tiled ends between pixels, so that tiles meet without seams.
+  const double sx = space.a * importer.detail_.scale, sy = space.d * importer.detail_.scale;
+  const double ox = space.e * importer.detail_.scale, oy = space.f * importer.detail_.scale;
+  const auto low = [](double v, double s, double o) { return (std::floor(v * s + o + 1e-4) - o) / s; };
+  const auto high = [](double v, double s, double o) { return (std::ceil(v * s + o - 1e-4) - o) / s; };
+  return {low(x, sx, ox), low(y, sy, oy), high(x + w, sx, ox), high(y + h, sy, oy)};
 }
 
 Box Importer::FilterReader::regionOf(const Box& place) const { return cuts_ ? cut(place, region_) : place; }
@@ -258,10 +264,13 @@ bool Importer::FilterReader::read(const std::vector<FilterFunction>& functions) 
   return true;
 }
 
-bool Importer::hasFilter(pugi::xml_node node, const State& state) {
-  // One that is not there takes the others with it (Filter Effects 1, chapter 5).
+std::vector<FilterFunction> Importer::filtersOf(pugi::xml_node node, const State& state) {
+  std::vector<FilterFunction> filters;
   for (const FilterFunction& f : state.style.filter) {
-    if (f.kind != FilterFunction::Kind::Reference) continue;
+    if (f.kind != FilterFunction::Kind::Reference) {
+      filters.push_back(f);
+      continue;
+    }
     const std::string shown = "filter '" + f.reference.substr(0, 60) + "' ";
     const std::string rest = ": " + element(node) + " is drawn without it";
     const pugi::xml_node target = document_.find(f.reference);
@@ -272,10 +281,9 @@ bool Importer::hasFilter(pugi::xml_node node, const State& state) {
     else if (std::find(used_.begin(), used_.end(), target) != used_.end())
       reporter_.ignored(document_.place(node), shown + "contains itself" + rest);
     else
-      continue;
-    return false;
+      filters.push_back(f);
   }
-  return !state.style.filter.empty();
+  return filters;
 }
 
 } // namespace gpgp::vector::svg

@@ -80,6 +80,13 @@ bool parseShadow(std::string_view text, const LengthContext& lengths, FilterFunc
   return count >= 2 && values[2] >= 0;
 }
 
+/// One of CSS has a unit unless it is zero.
+bool isAngle(std::string_view text) {
+  Scanner s(text);
+  double value = 0;
+  return isMath(text) || (s.number(value) && (value == 0 || !s.done()));
+}
+
 bool parseFactor(std::string_view text, double& value) {
   if (isMath(text)) return evaluate(text, {1, 1}, LengthAxis::X, value);
   Scanner s(text);
@@ -116,7 +123,7 @@ bool parseFilter(std::string_view text, const LengthContext& lengths, std::vecto
     const bool good = known->kind == Kind::DropShadow  ? parseShadow(inside, lengths, function)
                       : inside.empty()                 ? true
                       : known->kind == Kind::Blur      ? isPlainLength(inside, lengths, function.amount)
-                      : known->kind == Kind::HueRotate ? parseAngle(inside, function.amount)
+                      : known->kind == Kind::HueRotate ? isAngle(inside) && parseAngle(inside, function.amount)
                                                        : parseFactor(inside, function.amount);
     if (!good || !std::isfinite(function.amount) || (function.amount < 0 && known->kind != Kind::HueRotate))
       return false;

@@ -56,8 +56,8 @@ const Importer::GradientChain& Importer::chainOf(pugi::xml_node gradient) {
     const std::string_view name = document_.name(gradient), kind = oneOf(name, kGradients) ? "gradient" : name;
     if (kind == "gradient" ? !oneOf(document_.name(next), kGradients) : document_.name(next) != name)
       return noTemplate("no " + std::string(kind) + " but a " + element(next)), chain;
-    chain.cyclic = std::find(chain.gradients.begin(), chain.gradients.end(), next) != chain.gradients.end();
-    if (chain.cyclic) return chain;
+    if (std::find(chain.gradients.begin(), chain.gradients.end(), next) != chain.gradients.end())
+      return noTemplate("one of its own templates"), chain;
     if (chain.gradients.size() == kLongest) return noTemplate("one more than 32 after each other"), chain;
     gradient = next;
   }
@@ -138,8 +138,8 @@ std::shared_ptr<const Gradient> Importer::gradientOf(const GradientChain& chain,
       value = percent / 100 * whole;
     }
     if (value < 0 && axis == LengthAxis::Diagonal) { // a radius
-      reporter_.error(document_.place(a, 0), element(node) + " has a negative " + name + "; ignored");
-      value = percent / 100 * whole;
+      reporter_.error(document_.place(a, 0), element(node) + " has a negative " + name + ", which counts as none");
+      value = 0;
     }
     return static_cast<float>(value);
   };

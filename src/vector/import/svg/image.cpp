@@ -33,31 +33,87 @@ const Importer::Picture* Importer::pictureOf(pugi::xml_node node) {
   const std::string_view href = trim(hrefOf(node).value());
   const auto [known, isNew] = pictures_.try_emplace(href);
   Picture& picture = known->second;
-  if (!isNew) return picture.width ? &picture : nullptr;
+  if (!isNew) return picture.width || picture.drawing ? &picture : nullptr;
   picture.index = pictureCount_;
-  if (pictureCount_ < GPGP_MAX_IMAGES) {
-    std::vector<uint8_t> bytes;
-    if (isWord(href.substr(0, 5), "data:")) {
-      bytes = decodeDataUri(href);
-    } else {
-      std::string path, read;
-      const size_t left = limits_.imageBytes - std::min(imageBytes_, limits_.imageBytes);
-      const Read result = readBeside(href, {}, left, path, read);
-      picture.why = result.isTooLarge ? "makes more bytes of images than are read" : result.why;
-      imageBytes_ += read.size();
-      bytes.assign(read.begin(), read.end());
-    }
-    uint32_t width = 0, height = 0;
-    if (!bytes.empty() && images_.fn(images_.userData, picture.index, bytes.data(), bytes.size(), &width, &height) &&
-        width && height) {
-      picture.width = width;
-      picture.height = height;
-      ++pictureCount_;
-      return &picture;
-    }
-    picture.format = formatOf(bytes);
+  std::vector<uint8_t> bytes;
+  if (isWord(href.substr(0, 5), "data:")) {
+    bytes = decodeDataUri(href);
+  } else if (images_.fn && pictureCount_ < GPGP_MAX_IMAGES) {
+    std::string path, read;
+    const size_t left = limits_.imageBytes - std::min(imageBytes_, limits_.imageBytes);
+    const Read result = readBeside(href, {}, left, path, read);
+    picture.why = result.isTooLarge ? "makes more bytes of images than are read" : result.why;
+    imageBytes_ += read.size();
+    bytes.assign(read.begin(), read.end());
+  }
+  uint32_t width = 0, height = 0;
+  if (!bytes.empty() && images_.fn && pictureCount_ < GPGP_MAX_IMAGES &&
+      images_.fn(images_.userData, picture.index, bytes.data(), bytes.size(), &width, &height) && width && height) {
+    picture.width = width;
+    picture.height = height;
+    ++pictureCount_;
+    return &picture;
+  }
+  picture.format = formatOf(bytes);
+  const std::string_view mark = "<svg";
+  const bool isPacked = bytes.size() > 2 && bytes[0] == 0x1f && bytes[1] == 0x8b;
+  if (isPacked || std::search(bytes.begin(), bytes.end(), mark.begin(), mark.end()) != bytes.end()) {
+    const auto drawing = std::make_shared<Document>();
+    const Place place = document_.place(node);
+    drawing->setFile((place.file.empty() ? reporter_.name() : std::string(place.file)) + ":" +
+                     std::to_string(place.line) + ":" + std::to_string(place.column) + ": image");
+    if (drawing->load(std::as_bytes(std::span(bytes)))) return picture.drawing = drawing, &picture;
   }
   return nullptr;
+}
+
+void Importer::exchange(Importer& other) {
+  std::swap(result_, other.result_);
+  std::swap(aside_, other.aside_);
+  for (size_t Importer::*count :
+       {&Importer::elements_, &Importer::points_, &Importer::work_, &Importer::steps_, &Importer::imageBytes_,
+        &Importer::layerCount_, &Importer::blendCount_, &Importer::filterSteps_, &Importer::filterNumbers_})
+    std::swap(this->*count, other.*count);
+  std::swap(pictureCount_, other.pictureCount_);
+  std::swap(stopped_, other.stopped_);
+  madeClips_.clear(), other.madeClips_.clear();
+}
+
+/// A drawing is a picture of its own: it has its own style sheets and ids, reads no files, and is clipped to its place.
+void Importer::drawDrawing(pugi::xml_node node, const State& state, const ViewBox& box, const Document& drawing) {
+  if (state.depth >= limits_.depth || depthOfDrawings_ >= 8)
+    return reporter_.warn(document_.place(node), element(node) + " holds a drawing that is nested too deeply");
+  elements_ += drawing.bytes() / 64; // it is read again each time
+  if (stopped(node)) return;
+  Importer inner(drawing, reporter_, limits_, images_, detail_, nullptr, text_);
+  inner.depthOfDrawings_ = depthOfDrawings_ + 1;
+  State first = inner.begin();
+  if (inner.empty_) return;
+  const double pw = inner.result_.width, ph = inner.result_.height;
+  const bool isSized = pw > 0 && ph > 0;
+  double w = box.width, h = box.height;
+  if (w < 0) w = isSized ? h >= 0 ? h * pw / ph : pw : 300;
+  if (h < 0) h = isSized ? w * ph / pw : 150;
+  if (!(w > 0 && h > 0)) return;
+  const Affine fitted =
+      Affine{1, 0, 0, 1, box.x, box.y} * (isSized ? fitViewBox({0, 0, pw, ph}, w, h, aspectRatio(node)) : Affine{});
+  const double left = std::max(box.x, fitted.e), top = std::max(box.y, fitted.f);
+  const double right = isSized ? std::min(box.x + w, fitted.e + pw * fitted.a) : box.x + w,
+               bottom = isSized ? std::min(box.y + h, fitted.f + ph * fitted.d) : box.y + h;
+  if (!(right > left && bottom > top)) return;
+  if (mode_ == Mode::Measure)
+    return measure(rectangle(left, top, right - left, bottom - top, 0, 0, 1), toBox_ * state.transform);
+  if (mode_ == Mode::Clip || !state.style.visible) return;
+  first.transform = state.transform * fitted * first.transform;
+  inner.toPage_ = first.transform;
+  first.opacity = state.opacity, first.depth = state.depth + 1;
+  State outer = state;
+  clipped(node, state.transform * Affine{1, 0, 0, 1, left, top}, right - left, bottom - top, outer, [&] {
+    first.group = outer.group, first.fading = outer.fading, first.clips = outer.clips, first.layers = outer.layers;
+    exchange(inner);
+    inner.visit(drawing.root(), first);
+    exchange(inner);
+  });
 }
 
 void Importer::drawImage(pugi::xml_node node, const State& state) {
@@ -75,8 +131,8 @@ void Importer::drawImage(pugi::xml_node node, const State& state) {
 void Importer::drawPicture(pugi::xml_node node, const State& state, const ViewBox& box) {
   const std::string_view href = trim(hrefOf(node).value());
   const Place place = document_.place(node);
-  if (!images_.fn) return reporter_.warn(place, element(node) + " is not supported");
   const Picture* picture = pictureOf(node);
+  if (!picture && !images_.fn) return reporter_.warn(place, element(node) + " is not supported");
   if (!picture) {
     const Picture& refused = pictures_.find(href)->second;
     if (refused.why)
@@ -88,6 +144,7 @@ void Importer::drawPicture(pugi::xml_node node, const State& state, const ViewBo
                                              : "holds nothing that can be decoded";
     return reporter_.warn(place, element(node) + " " + why + "; not supported");
   }
+  if (picture->drawing) return drawDrawing(node, state, box, *picture->drawing);
   const double pw = picture->width, ph = picture->height, x = box.x, y = box.y;
   double w = box.width, h = box.height;
   if (w < 0) w = h >= 0 ? h * pw / ph : pw;

@@ -22,12 +22,18 @@ constexpr double kMaxReach = 1e7; // pixels
 
 /// No extension is known, and the reader's language is English.
 bool isFor(pugi::xml_node node) {
-  if (!trim(node.attribute("requiredExtensions").value()).empty()) return false;
+  if (node.attribute("requiredExtensions")) return false;
+  if (const pugi::xml_attribute features = node.attribute("requiredFeatures")) { // of SVG 1.1
+    std::string_view rest = trim(features.value());
+    if (rest.empty()) return false;
+    for (; !rest.empty(); rest = trim(rest.substr(std::min(rest.find_first_of(" \t\r\n\f"), rest.size()))))
+      if (!rest.starts_with("http://www.w3.org/TR/SVG") && !rest.starts_with("org.w3c.")) return false;
+  }
   const pugi::xml_attribute languages = node.attribute("systemLanguage");
   for (std::string_view rest = languages.value(); !rest.empty();) {
     const size_t end = std::min(rest.find(','), rest.size());
     const std::string_view tag = trim(rest.substr(0, end));
-    if (isWord(tag.substr(0, tag.find('-')), "en")) return true;
+    if (tag.substr(0, tag.find('-')) == "en") return true;
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return !languages;
@@ -131,6 +137,7 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
     if (clipsApart_) clip(node, name, state, nullptr);
   }
   if (mode_ != Mode::Paint) return content(node, name, state, useSize);
+  if (!state.style.filter.empty() && oneOf(name, kShapes) && shapeOf(node, name, state).empty()) return; // not rendered
   grouped(node, name, state, [&](State& own) { content(node, name, own, useSize); });
 }
 
@@ -165,7 +172,8 @@ void Importer::visitChildren(pugi::xml_node node, const State& state) {
 void Importer::visitSwitch(pugi::xml_node node, const State& state) {
   for (const pugi::xml_node child : node.children()) {
     const std::string_view name = document_.name(child);
-    if (name.empty() || oneOf(name, kSilent) || !isFor(child)) continue;
+    constexpr std::string_view about[] = {"title", "desc", "metadata", "style"};
+    if (name.empty() || oneOf(name, about) || !isFor(child)) continue;
     if (name != "foreignObject") return visit(child, state);
     reporter_.warn(document_.place(child), element(child) + " is not supported: <switch> shows what follows it");
   }
@@ -199,8 +207,8 @@ void Importer::visitUse(pugi::xml_node node, const State& state) {
                y = length(node, state.style, "y", lengths, LengthAxis::Y, 0);
   moved.transform = moved.transform * Affine{1, 0, 0, 1, x, y};
   constexpr double unset = -1;
-  const double size[2] = {extent(node, state.style, "width", lengths, LengthAxis::X, unset),
-                          extent(node, state.style, "height", lengths, LengthAxis::Y, unset)};
+  const double size[2] = {extent(node, {}, "width", lengths, LengthAxis::X, unset), // by no style sheet, as browsers do
+                          extent(node, {}, "height", lengths, LengthAxis::Y, unset)};
   const Context context{&state, node, used_.size(), moved.transform};
   moved.context = &context;
   used_.push_back(target);

@@ -182,13 +182,18 @@ private:
   // image.cpp
   struct Picture { // that was decoded; width 0: it could not be
     uint32_t index = 0, width = 0, height = 0;
-    const char* format = nullptr; ///< of one that is not decoded
-    const char* why = nullptr;    ///< of a file that is not read
+    const char* format = nullptr;                      ///< of one that is not decoded
+    const char* why = nullptr;                         ///< of a file that is not read
+    std::shared_ptr<const Document> drawing = nullptr; ///< instead of a picture
   };
   const Picture* pictureOf(pugi::xml_node node);
   void drawImage(pugi::xml_node node, const State& state);
   /// The node's picture where it lies: x, y, width, height. What cannot be drawn is said.
   void drawPicture(pugi::xml_node node, const State& state, const ViewBox& place);
+  /// The same of an SVG.
+  void drawDrawing(pugi::xml_node node, const State& state, const ViewBox& place, const Document& drawing);
+  /// What is made, and counted against the limits, goes over to another importer, and back.
+  void exchange(Importer& other);
 
   // shapes.cpp
   /// `silent` receives the verbs of a path that end where it has no vertex.
@@ -198,13 +203,14 @@ private:
                 LengthAxis axis, double otherwise, bool* given = nullptr);
   /// The same of a width or height, which is said and does not count where it is negative.
   double extent(pugi::xml_node node, const Style& style, const char* name, const LengthContext& lengths,
-                LengthAxis axis, double otherwise, bool* given = nullptr);
+                LengthAxis axis, double otherwise, bool* given = nullptr, std::optional<double> negative = {});
 
   // cascade.cpp
   void cascade(pugi::xml_node node, const Style& parent, const LengthContext& lengths, Style& style);
   /// What the properties that transform come to. `box`: the element's own, for transform-box.
   Affine transformOf(pugi::xml_node node, const Style& style, const LengthContext& lengths,
                      const std::function<Box()>& box = {});
+  void badTransform(pugi::xml_node node, const Place& place, std::string_view name, std::string_view value);
   std::optional<Ink> resolve(const Paint& paint, const Surface& surface, pugi::xml_node node, const char* property);
   Box boxOfContext(const Context& context);
 
@@ -212,7 +218,6 @@ private:
   /// A gradient, pattern or filter, the one it refers to, and so on.
   struct GradientChain {
     std::vector<pugi::xml_node> gradients;
-    bool cyclic = false;        ///< the last refers to one of them
     std::string_view otherFile; ///< which the last refers to
   };
   const GradientChain& chainOf(pugi::xml_node gradient);
@@ -242,8 +247,8 @@ private:
 
   // filter.cpp, primitives.cpp
   struct FilterReader;
-  /// Whether the state's filter counts; what is wrong is said.
-  bool hasFilter(pugi::xml_node node, const State& state);
+  /// What counts of the state's filter; what is wrong is said.
+  std::vector<FilterFunction> filtersOf(pugi::xml_node node, const State& state);
 
   // pattern.cpp
   /// Nothing where its tiles have no extent, or there is no box to measure them by.
@@ -289,6 +294,7 @@ private:
   bool mayBlend_ = false;   // something speaks of modes of mixing
   bool sharesClips_ = true; // neighbours may share one: there are no layers, whose paths lie in a row
   bool clipsInside_ = false, clipsApart_ = false; // shapes of a clip have clips; they are drawn with them
+  size_t depthOfDrawings_ = 0;                    ///< images that are drawings, around this one
   bool stopped_ = false, empty_ = false;          ///< the last: the root has a size of zero
   enum class Mode {
     Paint,

@@ -168,8 +168,9 @@ bool Importer::mask(pugi::xml_node target, pugi::xml_node node, const State& sta
   const double sides[4] = {region->left, region->top, region->right, region->bottom};
   for (size_t i = 0; i < 4; ++i) l.maskRegion[i] = static_cast<float>(std::clamp(sides[i], -kMaxNumber, kMaxNumber));
   store(space, l.maskTransform);
-  // What is around a mask's content: of its own properties a clip path and a mask (CSS Masking 1, 7.1).
+  // What is around a mask's content: of its own properties a mask.
   inner.style.filter.clear();
+  inner.style.clipPath.clear();
   inner.style.opacity = 1;
   inner.style.blend = GPGP_BLEND_NORMAL;
   used_.push_back(target);
@@ -203,7 +204,8 @@ void Importer::grouped(pugi::xml_node node, std::string_view name, State& state,
   // Clips are outermost: they cut what comes of all the rest.
   if (clips) clip(node, name, state, of);
   const pugi::xml_node masked = maskOf(node, style.mask);
-  const bool filters = hasFilter(node, state), blends = style.blend != GPGP_BLEND_NORMAL;
+  const std::vector<FilterFunction> functions = filtersOf(node, state);
+  const bool filters = !functions.empty(), blends = style.blend != GPGP_BLEND_NORMAL;
   bool effects = masked || filters || blends;
   const Affine space = !effects ? Affine{} : of ? of->space : spaceOf(node, name, state);
   const auto without = [&](const std::string& why) {
@@ -244,7 +246,7 @@ void Importer::grouped(pugi::xml_node node, std::string_view name, State& state,
     if (filters) {
       const size_t groupsUntilHere = result_.groups.size(), asideUntilHere = aside_.size();
       FilterReader reader{*this, own, node, space, box, drawnBox(before, groupsBefore, inverseOf(space)), *layer};
-      if (!reader.read(style.filter)) return nothing();
+      if (!reader.read(functions)) return nothing();
       if (reader.tooMany) {
         layer->steps.clear(); // and what they would have shown
         if (result_.groups.size() > groupsUntilHere) madeClips_.clear();

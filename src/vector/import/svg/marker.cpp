@@ -143,14 +143,15 @@ bool Importer::readMarker(const std::string& value, pugi::xml_node node, const S
   marker.style = styleOf(target, state.lengths);
   LengthContext lengths = state.lengths;
   lengths.fontSize = marker.style.fontSize;
+  const LengthContext around = lengths;
   const auto isOneOf = [&](const char* name, std::initializer_list<std::string_view> words) {
     const pugi::xml_attribute a = target.attribute(name);
     if (a && std::find(words.begin(), words.end(), trim(a.value())) == words.end()) ignored(target, a);
   };
   isOneOf("markerUnits", {"strokeWidth", "userSpaceOnUse"});
   if (trim(target.attribute("markerUnits").value()) != "userSpaceOnUse") marker.scale = state.style.strokeWidth;
-  marker.width = extent(target, {}, "markerWidth", lengths, LengthAxis::X, 3);
-  marker.height = extent(target, {}, "markerHeight", lengths, LengthAxis::Y, 3);
+  marker.width = extent(target, {}, "markerWidth", lengths, LengthAxis::X, 3, nullptr, 0);
+  marker.height = extent(target, {}, "markerHeight", lengths, LengthAxis::Y, 3, nullptr, 0);
   if (!(marker.width > 0 && marker.height > 0 && marker.scale > 0)) return false; // nothing is shown
   const pugi::xml_attribute boxText = target.attribute("viewBox");
   marker.box = parseViewBox(boxText.value());
@@ -160,12 +161,9 @@ bool Importer::readMarker(const std::string& value, pugi::xml_node node, const S
     marker.fit = fitViewBox(*marker.box, marker.width, marker.height, aspectRatio(target));
     lengths.width = marker.box->width, lengths.height = marker.box->height;
   }
-  const auto refer = [&](const char* name, LengthAxis axis, double from, double size) {
-    return referenceAlong(target, name, lengths, axis, from, size);
-  };
-  const ViewBox whole = marker.box.value_or(ViewBox{0, 0, marker.width, marker.height});
-  marker.reference = marker.fit(
-      {refer("refX", LengthAxis::X, whole.x, whole.width), refer("refY", LengthAxis::Y, whole.y, whole.height)});
+  // Lengths in its coordinates, with percentages of the viewport around: browsers know none of SVG 2's words.
+  const auto refer = [&](const char* name, LengthAxis axis) { return length(target, {}, name, around, axis, 0); };
+  marker.reference = marker.fit({refer("refX", LengthAxis::X), refer("refY", LengthAxis::Y)});
   const pugi::xml_attribute orient = target.attribute("orient");
   const std::string_view how = trim(orient.value());
   marker.turnsAtStart = how == "auto-start-reverse";

@@ -179,6 +179,8 @@ void Importer::FilterReader::convolveMatrix(Primitive& p) {
     transparent(p);
   };
   for (const double o : order)
+    if (o > 0 && o != std::floor(o)) return importer.ignored(p.node, p.node.attribute("order")), passOn(p);
+  for (const double o : order)
     if (!(o >= 1 && o == std::floor(o))) return wrong("order");
   if (std::max(order[0], order[1]) > static_cast<double>(kMaxOrder)) {
     unsupported(p.node, "order above " + std::to_string(kMaxOrder));
@@ -231,15 +233,19 @@ void Importer::FilterReader::lighting(Primitive& p) {
     return transparent(p);
   }
   if (p.node.attribute("kernelUnitLength")) unsupported(p.node, "kernelUnitLength");
-  const double constant = number(p.node, specular ? "specularConstant" : "diffuseConstant", 1),
-               surface = number(p.node, "surfaceScale", 1);
+  double constant = number(p.node, specular ? "specularConstant" : "diffuseConstant", 1);
+  const double surface = number(p.node, "surfaceScale", 1);
   double exponent = specular ? number(p.node, "specularExponent", 1) : 1;
   if (constant < 0) {
     importer.ignored(p.node, p.node.attribute(specular ? "specularConstant" : "diffuseConstant"));
-    return transparent(p);
+    if (specular) return transparent(p);
+    constant = 0;
   }
   exponent = std::clamp(exponent, 1.0, 128.0);
-  const auto color = colorOf(p.style.lightingColor, 1, p.style);
+  // As it is written, whatever the primitive works in: librsvg and resvg agree on that.
+  auto color = colorOf(p.style.lightingColor, 1, p.style);
+  if (p.encoding == GPGP_IMAGE_LINEAR)
+    for (size_t i = 0; i < 3; ++i) color[i] = srgbFromLinear(color[i]);
   const auto* kind = std::find(std::begin(lights), std::end(lights), importer.document_.name(light));
   std::vector<double> values = {surface, constant, color[0], color[1], color[2]};
   if (specular) values.push_back(exponent);
@@ -299,12 +305,12 @@ void Importer::FilterReader::flood(Primitive& p) {
 }
 
 void Importer::FilterReader::gaussianBlur(Primitive& p) {
-  const auto deviation = pair(p, "stdDeviation", 0);
+  auto deviation = pair(p, "stdDeviation", 0);
   if (const std::string_view edge = trim(p.node.attribute("edgeMode").value()); !edge.empty() && edge != "none")
     unsupported(p.node, "edgeMode '" + std::string(edge.substr(0, 40)) + "'");
   if (deviation[0] < 0 || deviation[1] < 0) {
     importer.ignored(p.node, p.node.attribute("stdDeviation"));
-    return passOn(p);
+    for (double& d : deviation) d = std::max(d, 0.0);
   }
   if (deviation[0] == 0 && deviation[1] == 0) return passOn(p);
   const double bw = byBox_ ? unit_.right - unit_.left : 1, bh = byBox_ ? unit_.bottom - unit_.top : 1;

@@ -188,6 +188,7 @@ bool parseOrigin(std::string_view text, const LengthContext& context, Point& ori
     const Word* word = std::begin(words);
     while (word != std::end(words) && !isWord(part, word->name)) ++word;
     if (word == std::end(words)) {
+      if (swapped) return false; // "top 20"
       double& value = down ? p.y : p.x;
       if (!parseLength(part, context, down ? LengthAxis::Y : LengthAxis::X, value)) return false;
       continue;
@@ -197,6 +198,22 @@ bool parseOrigin(std::string_view text, const LengthContext& context, Point& ori
     (down ? p.y : p.x) = word->part * (down ? context.height : context.width);
   }
   return count > 0 && (origin = p, true);
+}
+
+bool isPlainTransform(std::string_view text) {
+  constexpr std::string_view functions[] = {"matrix", "translate", "scale", "rotate", "skewX", "skewY"};
+  for (Scanner s(text); !s.done();) {
+    s.skipCommaSpace();
+    if (s.done()) break;
+    if (!oneOf(s.name(), functions)) return false;
+    for (bool inside = false; !s.done() && s.peek() != ')'; s.advance()) {
+      if (inside && std::string_view("0123456789+-.eE, \t\r\n\f").find(s.peek()) == std::string_view::npos)
+        return false;
+      inside |= s.peek() == '(';
+    }
+    s.take(")");
+  }
+  return true;
 }
 
 bool parseTransform(std::string_view text, const LengthContext& context, Affine& transform) {

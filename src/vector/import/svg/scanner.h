@@ -57,6 +57,9 @@ bool parseLength(std::string_view text, const LengthContext& context, LengthAxis
 /// A transform list, e.g. "translate(3 4) rotate(30)", as attributes or style sheets write it; false where it is
 /// malformed.
 bool parseTransform(std::string_view text, const LengthContext& context, Affine& transform);
+/// Whether it is written as in an attribute: with SVG 1.1's functions, and numbers without units (CSS Transforms
+/// 1, 8.2).
+bool isPlainTransform(std::string_view text);
 
 /// A number of degrees, or an angle with its unit; in radians.
 bool parseAngle(std::string_view text, double& radians);

@@ -38,13 +38,13 @@ double Importer::length(pugi::xml_node node, const Style& style, const char* nam
 }
 
 double Importer::extent(pugi::xml_node node, const Style& style, const char* name, const LengthContext& lengths,
-                        LengthAxis axis, double otherwise, bool* given) {
+                        LengthAxis axis, double otherwise, bool* given, std::optional<double> ifNegative) {
   bool has = false;
   const double value = length(node, style, name, lengths, axis, otherwise, &has);
   const bool negative = has && value < 0;
   if (negative) reporter_.error(document_.place(node), element(node) + " has a negative " + name + "; ignored");
   if (given) *given = has && !negative;
-  return negative ? otherwise : value;
+  return negative ? ifNegative.value_or(otherwise) : value;
 }
 
 Shape Importer::shapeOf(pugi::xml_node node, std::string_view name, const State& state, std::vector<size_t>* silent) {

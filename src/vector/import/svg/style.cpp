@@ -178,7 +178,9 @@ struct Context {
 
 bool setStrokeWidth(const Context& c) {
   double v = 0;
-  return parseLength(c.value, c.lengths, LengthAxis::Diagonal, v) && v >= 0 && (c.style.strokeWidth = v, true);
+  if (!parseLength(c.value, c.lengths, LengthAxis::Diagonal, v)) return false;
+  c.style.strokeWidth = std::max(v, 0.0); // an error of SVG 1.1, for which librsvg and resvg draw none
+  return true;
 }
 bool setMiterLimit(const Context& c) {
   double v = 0;
@@ -325,6 +327,11 @@ bool setSpacing(const Context& c, double& spacing) {
   if (isWord(c.value, "normal")) return spacing = 0, true;
   return parseLength(c.value, c.lengths, LengthAxis::X, spacing);
 }
+bool setSlant(const Context& c) {
+  const std::string_view word = c.value.substr(0, c.value.find_first_of(" \t\r\n\f"));
+  const bool slants = isWord(word, "italic") || isWord(word, "oblique"); // an angle may be behind
+  return (slants || isWord(word, "normal")) && (c.style.text.italic = slants, true);
+}
 bool setSpace(const Context& c) {
   const std::string_view first = c.value.substr(0, c.value.find(' '));
   const bool keeps = isWord(first, "pre") || isWord(first, "pre-wrap") || isWord(first, "break-spaces");
@@ -335,9 +342,7 @@ constexpr Word<double> kAnchors[] = {{"start", 0}, {"middle", 0.5}, {"end", 1}};
 constexpr Word<bool> kDirections[] = {{"ltr", false}, {"rtl", true}};
 bool setVertical(const Context& c) {
   const std::string lower = lowered(c.value);
-  return c.style.text.vertical =
-             lower.starts_with("tb") || lower.starts_with("vertical") || lower.starts_with("sideways"),
-         !lower.empty();
+  return c.style.text.vertical = lower.starts_with("tb") || lower.starts_with("vertical"), !lower.empty();
 }
 bool setReference(const Context& c, std::string& reference) {
   return reference = isWord(c.value, "none") ? std::string_view() : c.value, true;
@@ -404,7 +409,7 @@ const Property kProperties[] = {
     GPGP_PROPERTY("isolation", isolated, choose(c.value, kIsolations, c.style.isolated)),
     GPGP_PROPERTY("font-family", text.families, (c.style.text.families = c.value, !c.value.empty())),
     GPGP_PROPERTY("font-weight", text.weight, setWeight(c)),
-    GPGP_PROPERTY("font-style", text.italic, (c.style.text.italic = !isWord(c.value, "normal"), !c.value.empty())),
+    GPGP_PROPERTY("font-style", text.italic, setSlant(c)),
     GPGP_PROPERTY("font-variant", text.smallCaps,
                   (c.style.text.smallCaps = lowered(c.value).find("small-caps") != std::string::npos, true)),
     GPGP_PROPERTY("letter-spacing", text.letterSpacing, setSpacing(c, c.style.text.letterSpacing)),
@@ -417,7 +422,8 @@ const Property kProperties[] = {
     GPGP_PROPERTY("alignment-baseline", text.alignmentBaseline,
                   (c.style.text.alignmentBaseline = lowered(c.value), true)),
     GPGP_PROPERTY("baseline-shift", text.baselineShift, (c.style.text.baselineShift = lowered(c.value), true)),
-    GPGP_PROPERTY("text-decoration", text.decoration, (c.style.text.decoration = lowered(c.value), true)),
+    GPGP_PROPERTY("text-decoration", text.decoration,
+                  c.value.find(',') == c.value.npos && (c.style.text.decoration = lowered(c.value), true)),
     GPGP_PROPERTY("marker", markers, setMarkers(c)),
     GPGP_PROPERTY("marker-start", markers[0], setMarker(c, c.style.markers[0])),
     GPGP_PROPERTY("marker-mid", markers[1], setMarker(c, c.style.markers[1])),
@@ -474,9 +480,9 @@ bool isGeometry(std::string_view name) {
 
 bool isPresentationAttribute(std::string_view name) {
   constexpr std::string_view unsupported[] = {"shape-rendering", "image-rendering", "clip"},
-                             no[] = {"font",           "background", "background-color",
-                                     "mix-blend-mode", "isolation",  "translate",
-                                     "rotate",         "scale",      "transform-box"};
+                             no[] = {"font",          "background", "background-color", "mix-blend-mode",
+                                     "isolation",     "translate",  "rotate",           "scale",
+                                     "transform-box", "marker"};
   return (findProperty(name) && !oneOf(name, no)) || oneOf(name, unsupported);
 }
 

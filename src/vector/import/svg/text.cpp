@@ -19,12 +19,26 @@ double baselineOffset(std::string_view baseline, const GpgpSvgGlyph& g) {
   if (baseline == "central") return (em(g.ascent) - em(g.descent)) / 2;
   if (baseline == "hanging") return em(g.ascent) * 0.8;
   if (baseline == "mathematical") return em(g.ascent) * 0.5;
-  if (baseline == "text-before-edge" || baseline == "before-edge" || baseline == "text-top" || baseline == "top")
-    return em(g.ascent);
-  if (baseline == "text-after-edge" || baseline == "after-edge" || baseline == "text-bottom" || baseline == "bottom" ||
-      baseline == "ideographic")
-    return -em(g.descent);
+  if (baseline == "text-before-edge" || baseline == "before-edge") return em(g.ascent);
+  if (baseline == "text-after-edge" || baseline == "after-edge" || baseline == "ideographic") return -em(g.descent);
   return 0;
+}
+
+/// Whether a character stands upright in vertical lines (Unicode Standard Annex 50, in outline): those of East Asia,
+/// and pictures.
+bool isUpright(std::string_view text, size_t offset) {
+  const auto byte = [&](size_t i) {
+    return offset + i < text.size() ? static_cast<uint32_t>(text[offset + i]) & 0x3f : 0;
+  };
+  const auto first = static_cast<uint8_t>(text[offset]);
+  const uint32_t c = first >= 0xf0   ? (first & 7u) << 18 | byte(1) << 12 | byte(2) << 6 | byte(3)
+                     : first >= 0xe0 ? (first & 15u) << 12 | byte(1) << 6 | byte(2)
+                                     : 0; // what is below U+0800 is not
+  constexpr uint32_t ranges[][2] = {
+      {0x1100, 0x11ff}, {0x2e80, 0x3007}, {0x3012, 0x3013},   {0x3020, 0x302f},   {0x3031, 0xa4cf},  {0xa960, 0xa97f},
+      {0xac00, 0xd7ff}, {0xe000, 0xfaff}, {0xfe10, 0xfe1f},   {0xff01, 0xff07},   {0xff0a, 0xff19},  {0xff1f, 0xff3a},
+      {0xff3c, 0xff5a}, {0xffe0, 0xffe7}, {0x1f000, 0x1f7ff}, {0x1f900, 0x1faff}, {0x20000, 0x3fffd}};
+  return std::any_of(std::begin(ranges), std::end(ranges), [c](const auto& r) { return c >= r[0] && c <= r[1]; });
 }
 
 Shape shapeOfGlyph(const GpgpPath& path) {
@@ -105,8 +119,9 @@ struct Importer::Text {
   std::vector<Track> tracks;
   std::vector<Glyph> glyphs;
   Box box; ///< of all glyphs' cells
-  bool afterSpace = true;
-  Point at; ///< the current text position
+  bool afterSpace = true, vertical = false;
+  Point at;         ///< the current text position
+  double along = 0; ///< the same on a path, from where its text begins
 };
 
 /// Appends what an element holds, and what is in it.
@@ -120,32 +135,55 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
   text.elements.push_back({node, state, text.characters.size(), 0});
   size_t run = own - 1;
   const Text::Run kept = text.runs[run];
+  const auto append = [&](std::string_view value) {
+    if (!(state.style.fontSize > 0)) return; // nothing is seen
+    if (run != text.runs.size() - 1) text.runs.push_back(kept), run = text.runs.size() - 1;
+    for (const char c : value) {
+      const bool isSpace = c == ' ' || c == '\t' || c == '\n' || c == '\r';
+      if (isSpace && !keeps && text.afterSpace) continue;
+      if ((c & 0xc0) != 0x80) {
+        if (text.characters.size() >= kMaxCharacters) return stop(node, "more than 100000 characters of text");
+        Text::Character character;
+        character.offset = text.bytes.size();
+        character.run = run;
+        text.characters.push_back(character);
+      }
+      text.bytes += isSpace ? ' ' : c;
+      text.afterSpace = isSpace && !keeps;
+    }
+  };
+  if (document_.name(node) == "tref") { // SVG 1.1, 10.6: all characters of another element
+    const pugi::xml_node target = document_.find(trim(hrefOf(node).value()));
+    if (!target) reporter_.ignored(document_.place(node), "<tref> refers to what is not there");
+    std::string all;
+    for (pugi::xml_node at = target; at; ++steps_) {
+      if (at.type() == pugi::node_pcdata || at.type() == pugi::node_cdata) all += at.value();
+      if (at.first_child()) {
+        at = at.first_child();
+        continue;
+      }
+      while (at && at != target && !at.next_sibling()) at = at.parent();
+      at = at == target ? pugi::xml_node() : at.next_sibling();
+    }
+    append(all);
+  }
   for (const pugi::xml_node child : node.children()) {
     if (stopped_) break;
     if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata) {
-      if (run != text.runs.size() - 1) text.runs.push_back(kept), run = text.runs.size() - 1;
-      const std::string_view value = child.value();
-      for (size_t i = 0; i < value.size(); ++i) {
-        const char c = value[i];
-        const bool isSpace = c == ' ' || c == '\t' || c == '\n' || c == '\r';
-        if (isSpace && !keeps && text.afterSpace) continue;
-        if ((c & 0xc0) != 0x80) {
-          if (text.characters.size() >= kMaxCharacters) return stop(node, "more than 100000 characters of text");
-          Text::Character character;
-          character.offset = text.bytes.size();
-          character.run = run;
-          text.characters.push_back(character);
-        }
-        text.bytes += isSpace ? ' ' : c;
-        text.afterSpace = isSpace && !keeps;
-      }
+      append(child.value());
       continue;
     }
     const std::string_view name = document_.name(child);
     constexpr std::string_view silent[] = {"title",        "desc",          "metadata",         "animate", "set",
                                            "animateColor", "animateMotion", "animateTransform", "script"};
     if (name.empty() || oneOf(name, silent) || stopped(child)) continue;
-    if (name != "tspan" && name != "a" && name != "textPath") {
+    if (name == "textPath" && document_.name(node) != "text") {
+      reporter_.ignored(document_.place(child), "<textPath> stands in a " + this->element(node) +
+                                                    ", not in a <text>; it "
+                                                    "is not drawn");
+      continue;
+    }
+    if (name != "tspan" && name != "a" && name != "textPath" && name != "tref") {
       reporter_.warn(document_.place(child), this->element(child) + " is not supported");
       continue;
     }
@@ -170,12 +208,12 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
     if (const pugi::xml_attribute language = child.attribute("xml:lang")) next.language = language.value();
     const std::string& shift = inner.style.text.baselineShift;
     LengthContext lengths = inner.lengths;
-    lengths.width = lengths.height = lengths.fontSize = state.style.fontSize;
+    lengths.width = lengths.height = lengths.fontSize = inner.style.fontSize;
     double length = 0;
     if (shift == "sub")
-      next.shift -= 0.2 * state.style.fontSize;
+      next.shift -= 0.2 * inner.style.fontSize;
     else if (shift == "super")
-      next.shift += 0.4 * state.style.fontSize;
+      next.shift += 0.4 * inner.style.fontSize;
     else if (!shift.empty() && shift != "baseline" && parseLength(shift, lengths, LengthAxis::X, length))
       next.shift += length;
     if (name == "textPath") {
@@ -238,10 +276,9 @@ void Importer::placeText(Text& text) {
       return i;
     };
     using Character = Text::Character;
-    if (document_.name(e.node) != "textPath") {
-      list("x", LengthAxis::X, [](Character& c, double v) { c.x = v; });
-      list("y", LengthAxis::Y, [](Character& c, double v) { c.y = v; });
-    }
+    if (document_.name(e.node) == "textPath") continue; // it has none of these
+    list("x", LengthAxis::X, [](Character& c, double v) { c.x = v; });
+    list("y", LengthAxis::Y, [](Character& c, double v) { c.y = v; });
     list("dx", LengthAxis::X, [](Character& c, double v) { c.dx = v; });
     list("dy", LengthAxis::Y, [](Character& c, double v) { c.dy = v; });
     double last = 0;
@@ -275,8 +312,6 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
   if (last - first > kMaxLine)
     return reporter_.warn(document_.place(run.node),
                           element(run.node) + " has a line of more than 20000 characters; not drawn");
-  for (const GpgpSvgTextSpan& span : spans)
-    if (!(span.size > 0)) return; // nothing is seen
   const GpgpSvgText line{text.bytes.data() + from, static_cast<uint32_t>(to - from), spans.data(),
                          static_cast<uint32_t>(spans.size()), style.rightToLeft};
   struct Taken {
@@ -308,6 +343,8 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     return reporter_.warn(document_.place(run.node), element(run.node) + " has text that is not shaped; not drawn");
   if (taken.incomplete)
     reporter_.warn(document_.place(run.node), element(run.node) + " has glyphs with parts that are not supported");
+  const Track* track = run.track ? &text.tracks[run.track - 1] : nullptr;
+  const bool vertical = text.vertical && !track;
   // Along the line, before it is anchored.
   double width = 0, shift = 0, down = 0;
   size_t previous = SIZE_MAX;
@@ -320,8 +357,9 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     const size_t i = static_cast<size_t>(place - text.characters.begin()) - 1;
     g.character = i;
     const Text::Character& c = text.characters[i];
-    if (i != previous && i != first) shift += c.dx;
-    if (i != previous) down += c.dy;
+    // A vertical line is one on its side: its way goes down the page, and its underside is on the left.
+    if (i != previous && i != first) shift += vertical ? c.dy : c.dx;
+    if (i != previous) down += vertical ? -c.dx : c.dy;
     previous = i;
     g.advance = static_cast<double>(g.metrics.advance);
     g.size = static_cast<double>(g.metrics.size);
@@ -329,51 +367,83 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     if (g.metrics.advance > 0 && text.bytes[c.offset] == ' ') shift += text.runs[c.run].state.style.text.wordSpacing;
     width = std::max(width, static_cast<double>(g.metrics.x) + g.advance + shift);
   }
-  // Of an element that says how long it is, the whole of the line.
-  double stretch = 1;
-  auto next = std::lower_bound(text.elements.begin(), text.elements.end(), first,
-                               [](const Text::Element& e, size_t at) { return e.first < at; });
-  for (; next != text.elements.end() && next->first < last; ++next) {
-    const Text::Element& e = *next;
+  // Elements that say how long they are, the inner ones first (SVG 2, 11.5).
+  std::vector<double> stretches(taken.glyphs.size(), 1);
+  for (size_t n = text.elements.size(); n-- > 0;) {
+    const Text::Element& e = text.elements[n];
     const pugi::xml_attribute said = e.node.attribute("textLength");
     if (!said || e.first < first || e.last > last || e.first == e.last) continue;
-    if (e.first != first || e.last != last) {
-      reporter_.warn(document_.place(e.node),
-                     "textLength of a part of a line is not supported: " + element(e.node) + " is drawn without it");
-      continue;
-    }
-    double wanted = 0;
     LengthContext lengths = e.state.lengths;
     lengths.fontSize = e.state.style.fontSize;
-    if (!parseLength(said.value(), lengths, LengthAxis::X, wanted) || wanted < 0) {
+    double wanted = 0;
+    if (!parseLength(said.value(), lengths, LengthAxis::X, wanted) || !(wanted > 0)) {
       noLength(e.node, document_.place(said, 0), "textLength", said.value());
-    } else if (width > 0 && trim(e.node.attribute("lengthAdjust").value()) == "spacingAndGlyphs") {
-      stretch = wanted / width;
-    } else if (last - first > 1) {
-      double added = 0;
-      const double each = (wanted - width) / static_cast<double>(last - first - 1);
-      for (size_t k = 0; k < places.size(); ++k) {
-        if (k > 0 && taken.glyphs[k].character != taken.glyphs[k - 1].character) added += each;
-        places[k].x += added;
-      }
+      continue;
     }
-    width = wanted;
-    break;
+    const auto isInside = [&](size_t k) {
+      return taken.glyphs[k].character >= e.first && taken.glyphs[k].character < e.last;
+    };
+    const auto endOf = [&](size_t k) { return places[k].x + stretches[k] * taken.glyphs[k].advance; };
+    double low = 1e300, high = -1e300;
+    size_t steps = 0, previousOne = SIZE_MAX;
+    for (size_t k = 0; k < places.size(); ++k) {
+      if (!isInside(k)) continue;
+      low = std::min(low, places[k].x), high = std::max(high, endOf(k));
+      steps += previousOne != SIZE_MAX && taken.glyphs[k].character != previousOne;
+      previousOne = taken.glyphs[k].character;
+    }
+    if (!(high > low)) continue;
+    const bool squeezes = trim(e.node.attribute("lengthAdjust").value()) == "spacingAndGlyphs";
+    const double factor = squeezes ? wanted / (high - low) : 1;
+    if (!squeezes && steps == 0) continue;
+    const double each = squeezes ? 0 : (wanted - (high - low)) / static_cast<double>(steps);
+    size_t passed = 0;
+    previousOne = SIZE_MAX;
+    width = 0;
+    for (size_t k = 0; k < places.size(); ++k) {
+      if (isInside(k)) {
+        passed += previousOne != SIZE_MAX && taken.glyphs[k].character != previousOne;
+        previousOne = taken.glyphs[k].character;
+        places[k].x = low + factor * (places[k].x - low) + each * static_cast<double>(passed);
+        stretches[k] *= factor;
+      } else if (places[k].x >= high - 1e-6) {
+        places[k].x += wanted - (high - low) + each; // browsers space the last letter as well
+      }
+      width = std::max(width, endOf(k));
+    }
   }
   const double before = style.rightToLeft ? 1 - style.anchor : style.anchor;
-  const Track* track = run.track ? &text.tracks[run.track - 1] : nullptr;
-  const double left = (track ? track->offset : text.at.x) + begin.dx - before * width;
+  if (track && (begin.x || first == 0 || text.runs[text.characters[first - 1].run].track != run.track))
+    text.along = begin.x.value_or(0); // of its path, whatever the current text position is
+  const double left = (track      ? track->offset + text.along + begin.dx
+                       : vertical ? text.at.y + begin.dy
+                                  : text.at.x + begin.dx) -
+                      before * width;
   for (size_t k = 0; k < taken.glyphs.size(); ++k) {
     Text::Glyph& g = taken.glyphs[k];
     const Text::Run& of = text.runs[text.characters[g.character].run];
     const std::string& own = of.state.style.text.alignmentBaseline;
-    const std::string& baseline =
-        own.empty() || own == "auto" || own == "baseline" ? of.state.style.text.dominantBaseline : own;
-    const double lower = baselineOffset(baseline, g.metrics) * g.size - of.shift + places[k].y;
-    const double x = left + stretch * places[k].x;
-    g.advance *= stretch;
+    const std::string& dominant = of.state.style.text.dominantBaseline;
+    constexpr std::string_view alignments[] = {"alphabetic",   "middle",           "central",         "hanging",
+                                               "mathematical", "text-before-edge", "text-after-edge", "before-edge",
+                                               "after-edge",   "ideographic"};
+    const bool isDominant = !oneOf(own, alignments);
+    const bool isEdge = dominant == "before-edge" || dominant == "after-edge"; // of alignment-baseline alone
+    const std::string_view baseline = !isDominant ? std::string_view(own) : isEdge ? std::string_view() : dominant;
+    const bool isCentral =
+        vertical && (baseline.empty() || baseline == "auto"); // lines run through the letters' middle
+    const double lower = baselineOffset(isCentral ? "middle" : baseline, g.metrics) * g.size - of.shift + places[k].y;
+    const double x = left + places[k].x;
+    g.advance *= stretches[k];
     g.angle = text.characters[g.character].rotate * (std::numbers::pi / 180);
     g.at = {x, text.at.y + lower};
+    if (vertical && isUpright(text.bytes, text.characters[g.character].offset)) {
+      const double middle = 0.38 * g.size; // of an ideograph's square, above the baseline
+      g.at = {text.at.x - places[k].y + of.shift - g.advance / 2, x + g.advance / 2 + middle};
+    } else if (vertical) {
+      g.at = {text.at.x - lower, x};
+      g.angle += std::numbers::pi / 2;
+    }
     if (track) {
       Point place;
       double angle = 0;
@@ -383,7 +453,7 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
       g.angle += angle;
     }
     const double c = std::cos(g.angle), s = std::sin(g.angle);
-    g.map = Affine{c, s, -s, c, g.at.x, g.at.y} * Affine{stretch * g.size, 0, 0, g.size, 0, 0};
+    g.map = Affine{c, s, -s, c, g.at.x, g.at.y} * Affine{stretches[k] * g.size, 0, 0, g.size, 0, 0};
     if (!g.hidden) {
       const Affine cell{c, s, -s, c, g.at.x, g.at.y};
       const double up = static_cast<double>(g.metrics.ascent) * g.size,
@@ -393,8 +463,11 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     }
     text.glyphs.push_back(std::move(g));
   }
+  text.along += begin.dx + (1 - style.anchor) * width;
   if (track)
     text.at = track->points.empty() ? text.at : track->points.back();
+  else if (vertical)
+    text.at = text.at + Point{-down, begin.dy + (style.rightToLeft ? -1 : 1) * (1 - style.anchor) * width};
   else
     text.at = text.at + Point{begin.dx + (style.rightToLeft ? -1 : 1) * (1 - style.anchor) * width, down};
 }
@@ -430,15 +503,22 @@ void Importer::paintText(Text& text) {
         for (const std::string_view kind : {"underline", "overline", "line-through"}) {
           if ((kind == "line-through") != through || d.kinds.find(kind) == std::string::npos) continue;
           Shape lines;
-          for (size_t i = begin; i < end; ++i) {
+          for (size_t i = begin, next = begin; i < end; i = next) { // glyphs on one straight line have one
             const Text::Glyph& g = text.glyphs[i];
-            if (g.hidden || !(g.advance > 0)) continue;
+            double width = g.advance;
+            for (next = i + 1; next < end && !run.track && g.angle == 0 && !(text.glyphs[next].angle > 0) &&
+                               !(text.glyphs[next].angle < 0) && std::fabs(text.glyphs[next].at.y - g.at.y) < 1e-6;
+                 ++next)
+              width = std::max(width, text.glyphs[next].at.x - g.at.x + text.glyphs[next].advance);
+            if (g.hidden || !(width > 0)) continue;
             const double thick =
                 static_cast<double>(through ? g.metrics.strikeThickness : g.metrics.underlineThickness);
+            // Other renderers take the positions for those of the middle of the line, which fonts give of its top.
             const double y = static_cast<double>(through               ? g.metrics.strikePosition
                                                  : kind == "underline" ? g.metrics.underlinePosition
-                                                                       : -g.metrics.ascent);
-            append(lines, rectangle(0, g.size * (y - thick / 2), g.advance, g.size * thick, 0, 0, 1),
+                                                                       : -g.metrics.ascent) -
+                             (kind == "overline" ? 0 : thick / 2);
+            append(lines, rectangle(0, g.size * (y - thick / 2), width, g.size * thick, 0, 0, 1),
                    Affine{std::cos(g.angle), std::sin(g.angle), -std::sin(g.angle), std::cos(g.angle), g.at.x, g.at.y});
           }
           paint(text.runs[d.run], lines, std::nullopt);
@@ -467,11 +547,13 @@ void Importer::drawText(pugi::xml_node node, const State& state) {
   run.node = node;
   for (pugi::xml_node up = node; up && run.language.empty(); up = up.parent())
     run.language = up.attribute("xml:lang").value();
-  const std::string& decoration = state.style.text.decoration;
-  if (!decoration.empty() && decoration != "none") run.decorations.push_back({decoration, 0});
+  for (pugi::xml_node up = node; up.type() == pugi::node_element; up = up.parent()) { // with the paints of the text
+    const std::string decoration =
+        up == node ? state.style.text.decoration : styleOf(up, state.lengths).text.decoration;
+    if (!decoration.empty() && decoration != "none") run.decorations.push_back({decoration, 0});
+  }
   text.runs.push_back(std::move(run));
-  if (state.style.text.vertical)
-    reporter_.warn(document_.place(node), "writing-mode is not supported: <text> is drawn without it");
+  text.vertical = state.style.text.vertical;
   bool preserves = false;
   for (pugi::xml_node up = node; up; up = up.parent())
     if (const pugi::xml_attribute space = up.attribute("xml:space")) {

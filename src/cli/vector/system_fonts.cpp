@@ -1,0 +1,102 @@
+#include "cli/vector/system_fonts.h"
+
+#ifdef GPGP_CLI_FONTCONFIG
+#include <fontconfig/fontconfig.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace gpgp::cli {
+namespace {
+template <auto destroy> struct Destroyer {
+  template <class T> void operator()(T* object) const { destroy(object); }
+};
+using Pattern = std::unique_ptr<FcPattern, Destroyer<FcPatternDestroy>>;
+using Sorted = std::unique_ptr<FcFontSet, Destroyer<FcFontSetDestroy>>;
+using Characters = std::unique_ptr<FcCharSet, Destroyer<FcCharSetDestroy>>;
+
+const FcChar8* bytes(const std::string& text) { return reinterpret_cast<const FcChar8*>(text.c_str()); }
+
+std::string stringOf(FcPattern* pattern, const char* name) {
+  FcChar8* text = nullptr;
+  return FcPatternGetString(pattern, name, 0, &text) == FcResultMatch ? reinterpret_cast<const char*>(text) : "";
+}
+
+/// Of the text, without spaces and controls, which any font draws.
+Characters charactersOf(std::string_view text) {
+  Characters all(FcCharSetCreate());
+  const auto* at = reinterpret_cast<const FcChar8*>(text.data());
+  for (auto left = static_cast<int>(text.size()); left > 0;) {
+    FcChar32 c = 0;
+    const int length = FcUtf8ToUcs4(at, &c, left);
+    if (length <= 0) break;
+    const bool isSilent = c <= 0x20 || (c >= 0x7f && c <= 0xa0) || (c >= 0x200b && c <= 0x200f) ||
+                          (c >= 0x2028 && c <= 0x202f) || (c >= 0x2060 && c <= 0x206f) || (c >= 0xfe00 && c <= 0xfe0f);
+    if (!isSilent) FcCharSetAddChar(all.get(), c);
+    at += length, left -= length;
+  }
+  return all;
+}
+
+/// "wght=700,wdth=100".
+std::vector<std::pair<std::string, float>> axesOf(std::string_view list) {
+  std::vector<std::pair<std::string, float>> axes;
+  while (list.size() > 5) {
+    const size_t end = std::min(list.find(','), list.size());
+    if (list[4] == '=')
+      axes.emplace_back(list.substr(0, 4), std::strtof(std::string(list.substr(5, end - 5)).c_str(), nullptr));
+    list.remove_prefix(std::min(end + 1, list.size()));
+  }
+  return axes;
+}
+} // namespace
+
+void SystemFonts::Closer::operator()(_FcConfig* config) const { FcConfigDestroy(config); }
+
+SystemFonts::SystemFonts() : config_(FcInitLoadConfigAndFonts()) {}
+
+std::vector<SystemFont> SystemFonts::find(const std::vector<std::string>& families, float weight, bool italic,
+                                          const std::string& language, std::string_view text) const {
+  const Pattern wanted(FcPatternCreate());
+  for (const std::string& family : families) FcPatternAddString(wanted.get(), FC_FAMILY, bytes(family));
+  FcPatternAddDouble(wanted.get(), FC_WEIGHT, FcWeightFromOpenTypeDouble(static_cast<double>(weight)));
+  FcPatternAddInteger(wanted.get(), FC_SLANT, italic ? FC_SLANT_ITALIC : FC_SLANT_ROMAN);
+  FcPatternAddBool(wanted.get(), FC_SCALABLE, FcTrue);
+  if (!language.empty()) FcPatternAddString(wanted.get(), FC_LANG, bytes(language));
+  FcConfigSubstitute(config_.get(), wanted.get(), FcMatchPattern);
+  FcDefaultSubstitute(wanted.get());
+  FcResult result = FcResultNoMatch;
+  const Sorted sorted(FcFontSort(config_.get(), wanted.get(), FcFalse, nullptr, &result));
+  Characters missing = charactersOf(text);
+  std::vector<SystemFont> found;
+  for (int i = 0; sorted && i < sorted->nfont && (found.empty() || FcCharSetCount(missing.get()) > 0); ++i) {
+    FcPattern* font = sorted->fonts[i];
+    const std::string format = stringOf(font, FC_FONTFORMAT);
+    if (format != "TrueType" && format != "CFF") continue;
+    FcCharSet* has = nullptr;
+    if (FcPatternGetCharSet(font, FC_CHARSET, 0, &has) != FcResultMatch) continue;
+    if (!found.empty() && FcCharSetIntersectCount(has, missing.get()) == 0) continue;
+    const Pattern prepared(FcFontRenderPrepare(config_.get(), wanted.get(), font));
+    int face = 0;
+    FcPatternGetInteger(prepared.get(), FC_INDEX, 0, &face);
+    found.push_back({stringOf(prepared.get(), FC_FILE), static_cast<uint32_t>(face) & 0xffff,
+                     axesOf(stringOf(prepared.get(), FC_FONT_VARIATIONS))});
+    missing.reset(FcCharSetSubtract(missing.get(), has));
+  }
+  return found;
+}
+
+} // namespace gpgp::cli
+
+#else
+
+namespace gpgp::cli {
+void SystemFonts::Closer::operator()(_FcConfig*) const {}
+SystemFonts::SystemFonts() = default;
+std::vector<SystemFont> SystemFonts::find(const std::vector<std::string>&, float, bool, const std::string&,
+                                          std::string_view) const {
+  return {};
+}
+} // namespace gpgp::cli
+
+#endif

@@ -1,0 +1,38 @@
+// The fonts that the system has, by fontconfig.
+#pragma once
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+struct _FcConfig;
+
+namespace gpgp::cli {
+
+/// A face in a file; of a variable font with the values of its axes.
+struct SystemFont {
+  std::string file;
+  uint32_t face = 0;
+  std::vector<std::pair<std::string, float>> axes; ///< tag and value
+  bool operator==(const SystemFont&) const = default;
+};
+
+class SystemFonts {
+public:
+  SystemFonts();
+  /// False where the command is built without fontconfig, or it does not start.
+  explicit operator bool() const { return config_ != nullptr; }
+  /// The one that fits best, then others for the characters of the UTF-8 text that it does not have. `families` as
+  /// font-family lists them; `weight` from 1 to 1000.
+  std::vector<SystemFont> find(const std::vector<std::string>& families, float weight, bool italic,
+                               const std::string& language, std::string_view text) const;
+
+private:
+  struct Closer {
+    void operator()(_FcConfig* config) const;
+  };
+  std::unique_ptr<_FcConfig, Closer> config_;
+};
+
+} // namespace gpgp::cli
