@@ -55,15 +55,17 @@ public:
         takeFrames();
         askAgain();
       } while (now() < next);
-      if (!endpoint_->isConnected()) throw std::runtime_error("the server has left");
-      next = std::max(next + 1 / options_.display, now() - 0.5);
+      if (!endpoint_->isConnected()) break;
+      next = std::max(next + 1 / options_.display, now());
       displayOnce();
       if (window_) goesOn = window_->show(renderer_->picture());
     }
     const double seconds = now();
+    const bool left = !endpoint_->isConnected();
     endpoint_->disconnect();
     relay_.reset();
     const bool well = report(seconds);
+    if (left) throw std::runtime_error("the server has left");
     stage_.checkMessages();
     return well ? 0 : 1;
   }
