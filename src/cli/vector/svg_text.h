@@ -38,7 +38,8 @@ private:
   std::vector<GpgpFont> chosen(const GpgpSvgTextSpan& span, std::string_view text);
   std::vector<GpgpFont> chosenOfSystem(const GpgpSvgTextSpan& span, std::string_view text);
 
-  std::optional<SystemFonts> system_;
+  bool fromSystem_ = false;
+  std::optional<SystemFonts> system_; ///< when first asked for
   std::vector<Face> faces_;
   Shaper shaper_;
   Layout layout_;
