@@ -355,6 +355,54 @@ TEST(SvgEqual, DrawingsAreImages) {
             Texts{"test.svg:2:1: image:1:41: warning: <image> is not supported"});
 }
 
+TEST(SvgEqual, ErrorsCountAsOtherRenderersTakeThem) {
+  const std::string stops = "<stop stop-color='red'/><stop offset='1' stop-color='blue'/>";
+  const std::string symbol =
+      "<symbol id='s' viewBox='0 0 10 10'><path d='M0 0h10v10z'/></symbol><use href='#s' width='20' "
+      "height='20' ";
+  const Pair pairs[] = {
+      {"a negative width of strokes", "<g stroke-width='9' stroke='red'><path d='M0 9h20' stroke-width='-1'/></g>", ""},
+      {"a radius below zero is zero",
+       "<radialGradient id='g' r='-1'>" + stops + "</radialGradient><rect width='9' height='9' fill='url(#g)'/>",
+       "<rect width='9' height='9' fill='blue'/>"},
+      {"templates that refer back",
+       "<linearGradient id='g' href='#h'/><linearGradient id='h' href='#g'>" + stops +
+           "</linearGradient><rect width='9' height='9' fill='url(#g)'/>",
+       "<linearGradient id='g'>" + stops + "</linearGradient><rect width='9' height='9' fill='url(#g)'/>"},
+      {"a pattern measured by nothing has its fallback",
+       "<pattern id='p' width='.5' height='.5'><rect width='9' height='9'/></pattern><path d='M0 9h20' "
+       "stroke-width='4' "
+       "stroke='url(#p) red'/>",
+       "<rect y='7' width='20' height='4' fill='red'/>"},
+      {"markers of less than no size",
+       "<marker id='m' markerHeight='-1'><rect width='9' height='9'/></marker><path d='M0 9h20' marker-end='url(#m)'/>",
+       ""},
+      {"style sheets give a use no size", symbol + "style='width:50px;height:5px'/>", symbol + "/>"},
+      {"escapes in base 64",
+       "<image "
+       "href='data:image/"
+       "svg+xml;base64,PHN2ZyB4bWxucz0iaHR0cDovL3d3dy53My5vcmcvMjAwMC9zdmciIHdpZHRoPSI5IiBoZWlnaHQ9Ijki"
+       "PjxyZWN0IHdpZHRoPSI5IiBoZWlnaHQ9IjkiLz48L3N2Zz4%3D'/>",
+       "<rect width='9' height='9'/>"},
+  };
+  for (const Pair& pair : pairs) {
+    SCOPED_TRACE(pair.name);
+    EXPECT_LE(worst(picture(page(pair.with)), picture(page(pair.without))), kSame);
+  }
+  const auto steps = [](const std::string& filter, const std::string& element = "<rect width='9' height='9' ") {
+    const Import i = page("<filter id='f'><feOffset dx='5'/></filter>" + element + "filter='" + filter + "'/>");
+    size_t count = 0;
+    for (const auto& group : i.drawing.groups) count += group.layer ? group.layer->steps.size() : 0;
+    return count;
+  };
+  EXPECT_EQ(steps("url(#f)"), 1u);
+  EXPECT_EQ(steps("url(#f) url(#none) blur(2px)"), 2u) << "only the one that is not there is left out";
+  EXPECT_EQ(steps("hue-rotate(45deg)"), 1u);
+  EXPECT_EQ(steps("hue-rotate(0)"), 1u);
+  EXPECT_EQ(steps("hue-rotate(45)"), 0u) << "an angle without a unit";
+  EXPECT_EQ(steps("url(#f)", "<rect width='0' height='9' "), 0u) << "what has no size is not rendered";
+}
+
 TEST(SvgEqual, TransformsOfAttributesHaveNoUnits) {
   const std::string start = "<rect width='20' height='20' ";
   for (const char* wrong : {"translate(20px)", "translate(5%)", "rotate(20deg)", "skew(20)", "translateX(20)",

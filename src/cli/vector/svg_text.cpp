@@ -82,9 +82,8 @@ SvgText::SvgText(const std::vector<std::string>& files, bool fromSystem) {
     faces_.push_back({std::move(*font), *about, lowered(about->family ? about->family : ""), weightOf(style),
                       has("italic") || has("oblique")});
   }
-  if (files.empty() && fromSystem) system_.emplace();
-  if (system_ && !*system_) system_.reset();
-  if (faces_.empty() && !system_) return;
+  fromSystem_ = files.empty() && fromSystem && SystemFonts::areThere();
+  if (faces_.empty() && !fromSystem_) return;
   Result<Shaper> shaper = Shaper::create();
   if (!shaper) throw Failure(std::string("text cannot be shaped: ") + shaper.name());
   shaper_ = std::move(*shaper);
@@ -94,6 +93,7 @@ SvgText::SvgText(const std::vector<std::string>& files, bool fromSystem) {
 }
 
 std::vector<GpgpFont> SvgText::chosenOfSystem(const GpgpSvgTextSpan& span, std::string_view text) {
+  if (!system_) system_.emplace();
   std::vector<GpgpFont> fonts;
   for (SystemFont& wanted :
        system_->find(familiesOf(span.families), span.weight, span.italic != 0, span.language, text)) {
@@ -119,7 +119,7 @@ std::vector<GpgpFont> SvgText::chosenOfSystem(const GpgpSvgTextSpan& span, std::
 }
 
 std::vector<GpgpFont> SvgText::chosen(const GpgpSvgTextSpan& span, std::string_view text) {
-  if (system_) return chosenOfSystem(span, text);
+  if (fromSystem_) return chosenOfSystem(span, text);
   const std::vector<std::string> families = familiesOf(span.families);
   const auto rank = [&](const Face& face) { // the smallest first
     const auto at = std::find_if(families.begin(), families.end(),

@@ -23,7 +23,7 @@ public:
   SvgText& operator=(const SvgText&) = delete;
   /// Without fonts, text stays unsupported.
   template <class Source> void attach(Source& source) {
-    if (faces_.empty() && !system_) return;
+    if (faces_.empty() && !fromSystem_) return;
     source.textFn = shape;
     source.textUserData = this;
   }
@@ -42,7 +42,8 @@ private:
   std::vector<GpgpFont> chosen(const GpgpSvgTextSpan& span, std::string_view text);
   std::vector<GpgpFont> chosenOfSystem(const GpgpSvgTextSpan& span, std::string_view text);
 
-  std::optional<SystemFonts> system_;
+  bool fromSystem_ = false;
+  std::optional<SystemFonts> system_; ///< when first asked for
   std::vector<Face> faces_;
   Shaper shaper_;
   Layout layout_;

@@ -53,10 +53,13 @@ std::vector<std::pair<std::string, float>> axesOf(std::string_view list) {
 
 void SystemFonts::Closer::operator()(_FcConfig* config) const { FcConfigDestroy(config); }
 
+bool SystemFonts::areThere() { return true; }
+
 SystemFonts::SystemFonts() : config_(FcInitLoadConfigAndFonts()) {}
 
 std::vector<SystemFont> SystemFonts::find(const std::vector<std::string>& families, float weight, bool italic,
                                           const std::string& language, std::string_view text) const {
+  if (!config_) return {};
   const Pattern wanted(FcPatternCreate());
   for (const std::string& family : families) FcPatternAddString(wanted.get(), FC_FAMILY, bytes(family));
   FcPatternAddDouble(wanted.get(), FC_WEIGHT, FcWeightFromOpenTypeDouble(static_cast<double>(weight)));
@@ -92,6 +95,7 @@ std::vector<SystemFont> SystemFonts::find(const std::vector<std::string>& famili
 
 namespace gpgp::cli {
 void SystemFonts::Closer::operator()(_FcConfig*) const {}
+bool SystemFonts::areThere() { return false; }
 SystemFonts::SystemFonts() = default;
 std::vector<SystemFont> SystemFonts::find(const std::vector<std::string>&, float, bool, const std::string&,
                                           std::string_view) const {

@@ -20,9 +20,10 @@ struct SystemFont {
 
 class SystemFonts {
 public:
+  /// Whether the command is built with fontconfig.
+  static bool areThere();
+  /// Reads what fontconfig knows, which takes some time.
   SystemFonts();
-  /// False where the command is built without fontconfig, or it does not start.
-  explicit operator bool() const { return config_ != nullptr; }
   /// The one that fits best, then others for the characters of the UTF-8 text that it does not have. `families` as
   /// font-family lists them; `weight` from 1 to 1000.
   std::vector<SystemFont> find(const std::vector<std::string>& families, float weight, bool italic,
