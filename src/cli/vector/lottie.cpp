@@ -247,7 +247,9 @@ Outcome lottie(const VectorOptions& options, const CommonOptions& common, const 
        << " pixels; each evaluated in " << milliseconds(evaluate / count) << ", converted in "
        << milliseconds(convert / count) << "; GPU " << milliseconds(gpu / count) << " on " << session.device().name()
        << '\n';
-  if (messages.count()) text << messages.count() << " kinds of things are approximated, left out or not valid\n";
+  if (messages.count())
+    text << messages.count() << (messages.count() == 1 ? " kind of thing is" : " kinds of things are")
+         << " approximated, left out or not valid\n";
   if (!options.out.empty()) text << "picture: " << options.out << '\n';
   outcome.text = text.str();
   outcome.json = {{"file", options.file},

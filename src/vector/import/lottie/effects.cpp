@@ -59,7 +59,7 @@ void Evaluator::setFilter(svg::ImportedLayer& layer, const Affine& map, std::vec
 }
 
 Evaluator::Kept Evaluator::effects(const Layer& l, double frame, const Affine& map) {
-  if (l.effects.empty() || !isUsable(map)) return nullptr;
+  if (l.effects.empty() || !isUsable(map) || !spend(16 * l.effects.size())) return nullptr;
   std::vector<GpgpFilterStep> steps;
   for (const Effect& e : l.effects) {
     const auto number = [&](size_t i) { return e.numbers[i].number(frame); };
@@ -128,7 +128,7 @@ std::vector<Evaluator::MaskNow> Evaluator::masksOf(const Layer& l, double frame,
       now.sigmaY = std::clamp(feather.y * kBlurSigma, 0.0, 1e4);
     }
     const Contour contour = contourOf(mask.path.at(frame), mask.path.closed);
-    if (!spend(contour.vertices.size())) break;
+    if (!spend(1 + contour.vertices.size())) break;
     append(contour, {}, now.shape);
     if (const double expansion = mask.expansion.number(frame); expansion > 0) {
       StrokeStyle style;

@@ -173,8 +173,10 @@ void Evaluator::layer(const Composition& c, size_t index, double frame, const Af
                     of.autoOrient && !of.transform.split ? of.transform.position.direction(frame) : 0);
   };
   Affine map = ownMatrix(l);
-  for (int64_t parent = l.parentPlace; parent >= 0; parent = c.layers[static_cast<size_t>(parent)].parentPlace)
+  for (int64_t parent = l.parentPlace; parent >= 0; parent = c.layers[static_cast<size_t>(parent)].parentPlace) {
+    if (!spend(1)) return;
     map = ownMatrix(c.layers[static_cast<size_t>(parent)]) * map;
+  }
   map = outer * map;
   if (!map.finite()) return;
 

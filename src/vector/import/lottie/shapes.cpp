@@ -8,6 +8,7 @@
 
 namespace gpgp::vector::lottie {
 namespace {
+constexpr size_t kWorkOfRidge = 16; ///< each is looked for by length: as much as so many points take
 
 class Shapes {
 public:
@@ -188,7 +189,7 @@ private:
         case ShapeKind::Twist: contour = twisted(contour, amount, item.position.point(frame_)); break;
         case ShapeKind::Zigzag:
           if (const double ridges = number(item, 1);
-              spend_(contour.segments() * static_cast<size_t>(1 + std::clamp(ridges, 0.0, 1000.0))))
+              spend_(kWorkOfRidge * contour.segments() * static_cast<size_t>(1 + std::clamp(ridges, 0.0, 1000.0))))
             contour = zigzagged(contour, amount, ridges, item.mode == 2);
           break;
         default: break;
