@@ -212,6 +212,12 @@ public:
   Value random(const Value& low, const Value& high) noexcept {
     return own(gpgpAddExpression(get(), GPGP_EXPRESSION_RANDOM, low.get(), high.get()));
   }
+  Value min(const Value& a, const Value& b) noexcept { return expression(GPGP_EXPRESSION_MIN, a, b); }
+  Value max(const Value& a, const Value& b) noexcept { return expression(GPGP_EXPRESSION_MAX, a, b); }
+  /// How many whole b fit into a, rounded down.
+  Value floor(const Value& a, const Value& b) noexcept { return expression(GPGP_EXPRESSION_FLOOR, a, b); }
+  /// A number in [0, 1) that depends on both values alone.
+  Value noise(const Value& a, const Value& b) noexcept { return expression(GPGP_EXPRESSION_NOISE, a, b); }
   Value tag(const char* name) const noexcept { return own(gpgpAddTag(get(), name)); }
   Value shapePos(Axis axis) const noexcept { return own(attribute(GPGP_VALUE_SHAPE_POS_X, axis)); }
   Value shapeSize(Axis axis) const noexcept { return own(attribute(GPGP_VALUE_SHAPE_SIZE_X, axis)); }
@@ -236,6 +242,21 @@ public:
   }
   Operator swapSize(Axis x, Axis y, Axis z, const Successor& to) noexcept {
     return add(GPGP_OPERATOR_SWAP_SIZE, {axisValue(x), axisValue(y), axisValue(z)}, {to});
+  }
+  Operator resizeCorner(const Value& x, const Value& y, const Value& z, const Successor& to) noexcept {
+    return add(GPGP_OPERATOR_RESIZE_CORNER, {x.get(), y.get(), z.get()}, {to});
+  }
+  Operator growAlong(Axis axis, const Value& length, const Successor& to) noexcept {
+    return add(GPGP_OPERATOR_GROW_ALONG, {axisValue(axis), length.get()}, {to});
+  }
+  Operator turnCorner(const Value& x, const Value& y, const Value& z, const Successor& to) noexcept {
+    return add(GPGP_OPERATOR_TURN_CORNER, {x.get(), y.get(), z.get()}, {to});
+  }
+  Operator toFace(const Value& number, const Successor& to) noexcept {
+    return add(GPGP_OPERATOR_TO_FACE, {number.get()}, {to});
+  }
+  Operator setAttribute(const Value& value, const Successor& to) noexcept {
+    return add(GPGP_OPERATOR_SET_ATTRIBUTE, {value.get()}, {to});
   }
   Operator compSplit(const Successor& faces) noexcept { return add(GPGP_OPERATOR_COMP_SPLIT, {}, {faces}); }
   Operator compSplit(const Successor& top, const Successor& bottom, const Successor& sides) noexcept {
@@ -274,6 +295,9 @@ public:
   }
 
 private:
+  Value expression(GpgpExpressionKind kind, const Value& a, const Value& b) noexcept {
+    return own(gpgpAddExpression(get(), kind, a.get(), b.get()));
+  }
   Value own(GpgpGrammarValue value) const noexcept { return Value(value, get()); }
   static GpgpGrammarValue attribute(GpgpGrammarValueId first, Axis axis) noexcept {
     return {first + static_cast<uint32_t>(axis), 0};

@@ -91,7 +91,11 @@ enum {
   GPGP_EXPRESSION_AND = 10,
   GPGP_EXPRESSION_OR = 11,
   GPGP_EXPRESSION_RANDOM = 12, /**< Rand(left, right): a random number between them. */
-  GPGP_EXPRESSION_CORNER = 13  /**< (left, right): a corner of a polygon, in [-0.5, 0.5]. */
+  GPGP_EXPRESSION_CORNER = 13, /**< (left, right): a corner of a polygon, in [-0.5, 0.5]. */
+  GPGP_EXPRESSION_MIN = 14,    /**< Min(left, right). */
+  GPGP_EXPRESSION_MAX = 15,    /**< Max(left, right). */
+  GPGP_EXPRESSION_FLOOR = 16,  /**< Floor(left, right): how many whole right fit into left, rounded down. */
+  GPGP_EXPRESSION_NOISE = 17   /**< Noise(left, right): a number in [0, 1) that depends on both values alone. */
 };
 
 /** Returns a value that combines two others. It may be used any number of times. An expression holds at most 1024
@@ -123,7 +127,12 @@ enum {
   GPGP_OPERATOR_SET_AS_DYNAMIC_CONVEX_POLYGON = 16, /**< Values: corners. One successor. */
   GPGP_OPERATOR_SET_AS_DYNAMIC_CONCAVE_POLYGON = 17,
   GPGP_OPERATOR_SET_AS_DYNAMIC_CONVEX_RIGHT_PRISM = 18,
-  GPGP_OPERATOR_SET_AS_DYNAMIC_CONCAVE_RIGHT_PRISM = 19
+  GPGP_OPERATOR_SET_AS_DYNAMIC_CONCAVE_RIGHT_PRISM = 19,
+  GPGP_OPERATOR_RESIZE_CORNER = 20, /**< Values: x, y, z. One successor. */
+  GPGP_OPERATOR_GROW_ALONG = 21,    /**< Values: axis, length. One successor. */
+  GPGP_OPERATOR_TURN_CORNER = 22,   /**< Values: x, y, z in degrees. One successor. */
+  GPGP_OPERATOR_TO_FACE = 23,       /**< Value: 0 top, 1 bottom, 2 back, 3 front, 4 left, 5 right. One successor. */
+  GPGP_OPERATOR_SET_ATTRIBUTE = 24  /**< Value: the custom attribute. One successor. */
 };
 
 typedef uint32_t GpgpGrammarOperator; /**< An operator of a builder. 0: none. */

@@ -34,6 +34,11 @@ GPGP_FN uvec2 childKey(uvec2 key, uint index) {
 /// [0, 1) with 24 bits, exact.
 GPGP_FN float unitFloat(uint bits) { return float(bits >> 8) * 5.9604645e-8f; }
 
+/// [0, 1), from two values alone.
+GPGP_FN float noise(float a, float b) {
+  return unitFloat(mixBits(floatBitsToUint(a) ^ mixBits(floatBitsToUint(b) + 0x9e3779b9u)));
+}
+
 /// Number index of those that are drawn at a place in a derivation, in [0, 1). A key's halves are mixed, so that one
 /// round of one of them is enough, which kernels have at each place that draws.
 GPGP_FN float drawnNumber(uvec2 key, uint index) { return unitFloat(mixBits(key.y + index * 0xc2b2ae3du)); }

@@ -104,6 +104,9 @@ GpgpResult useGrammarBuilder() {
   g.rule("F", g.randomRule(g.shapeSeed(), {{1, "A"}, {2, g.replicate({"A", "B", g.discard()})}}));
   g.rule("G", g.setAsDynamic(GPGP_OPERATOR_SET_AS_DYNAMIC_CONVEX_POLYGON,
                              {g.corner(0, 0), g.corner(1, 0), g.corner(0, 1)}, "A"));
+  g.rule("H", g.resizeCorner(
+                  g.min(1, g.shapeSize(Axis::x)), g.max(1, all), g.floor(all, 2),
+                  g.growAlong(Axis::y, 3, g.turnCorner(0, 90, 0, g.toFace(0, g.setAttribute(g.noise(all, 1), "A"))))));
   return g.compile().code();
 }
 

@@ -42,19 +42,55 @@ TEST(CliCga, StreetsComeFromGeoJson) {
   EXPECT_NE(error.find("\"streetWidth\" has 2 numbers; the outline has 4 edges"), std::string::npos) << error;
 }
 
+TEST(CliCga, DerivesOnTheGpuOrSaysWhatKeepsItOnTheCpu) {
+  const TemporaryFile box("box.cga",
+                          "attr h = rand(3, 9)\nLot --> report(\"h\", h) extrude(h) comp(f) { side: Wall. | top: "
+                          "30%: color(\"#ff0000\") A. else: split(x) { ~2: B. }* }\n");
+  const json gpu = gpgpJson({"spawn", box.path(), "--axioms", "20"});
+  const json cpu = gpgpJson({"spawn", box.path(), "--axioms", "20", "--device", "cpu"});
+  EXPECT_TRUE(gpu["device"].is_string()) << gpu;
+  EXPECT_TRUE(gpu["on_cpu_because"].is_null());
+  EXPECT_TRUE(cpu["device"].is_null());
+  EXPECT_EQ(cpu["on_cpu_because"], "--device cpu");
+  for (const char* same : {"terminals", "rules", "triangles", "start", "axioms"})
+    EXPECT_EQ(gpu[same], cpu[same]) << same;
+  EXPECT_NEAR(gpu["reports"]["h"].get<double>(), cpu["reports"]["h"].get<double>(), 1e-4);
+  EXPECT_EQ(gpgpJson({"spawn", box.path(), "--axioms", "20", "--device", "gpu"})["terminals"], cpu["terminals"]);
+
+  const TemporaryFile roof("roof.cga", "Lot --> extrude(3)\n  roofHip(30)\n");
+  const json other = gpgpJson({"spawn", roof.path()});
+  EXPECT_TRUE(other["device"].is_null());
+  EXPECT_EQ(other["on_cpu_because"], roof.path() + ":2:3: the operation 'roofHip' has no operator on the GPU");
+  const std::string error = gpgpFailure({"spawn", roof.path(), "--device", "gpu"});
+  EXPECT_NE(error.find(":2:3: the operation 'roofHip' has no operator on the GPU"), std::string::npos) << error;
+
+  // Rectangles of GeoJSON, but not other polygons.
+  const auto lots = [](const std::string& ring) {
+    return "{\"type\": \"Polygon\", \"coordinates\": [[" + ring + "]]}";
+  };
+  const TemporaryFile rectangle("r.json", lots("[3,0],[13,5],[8,15],[-2,10],[3,0]"));
+  const TemporaryFile triangle("t.json", lots("[0,0],[10,0],[8,20],[0,0]"));
+  EXPECT_TRUE(gpgpJson({"spawn", box.path(), "--axiom-file", rectangle.path()})["device"].is_string());
+  EXPECT_TRUE(gpgpJson({"spawn", box.path(), "--axiom-file", triangle.path()})["device"].is_null());
+}
+
 TEST(CliCga, WhatNeedsAGraphSaysWhoHasNone) {
-  const TemporaryFile cga("a.cga", "Lot --> extrude(2)\n"), lsystem("a.lsys", "axiom: F\n"), out("a.bin");
+  const TemporaryFile cga("a.cga", "attr h = 2\nLot --> extrude(h)\n"), lsystem("a.lsys", "axiom: F\n"), out("a.bin");
+  const TemporaryFile roof("hip.cga", "Lot --> extrude(2) roofHip(30)\n");
   const TemporaryFile stack("a.gml", "[ /A /B ] 0 0 terminal\n/Box axiom\nX [ 0.5 { A } -1 { B } ] subdiv\n");
   for (const char* command : {"graph", "tune", "bake"})
-    for (const TemporaryFile* file : {&cga, &lsystem}) {
+    for (const TemporaryFile* file : {&roof, &lsystem}) {
       std::vector<std::string> arguments{command, file->path()};
       if (std::string(command) == "bake") arguments.insert(arguments.end(), {"--out", out.path()});
       const ProcessResult result = gpgp(arguments);
-      EXPECT_EQ(result.exitCode, 2) << result.err;
+      EXPECT_EQ(result.exitCode, file == &roof ? 1 : 2) << result.err;
       EXPECT_NE(result.err.find("has no operator graph"), std::string::npos) << result.err;
-      EXPECT_NE(result.err.find("`gpgp spawn "), std::string::npos) << result.err;
     }
   EXPECT_EQ(gpgp({"graph", stack.path()}).exitCode, 0);
+  EXPECT_NE(gpgp({"graph", cga.path(), "--set", "h=7.5"}).out.find("GrowAlong(Y,7.5)"), std::string::npos);
+  EXPECT_EQ(gpgp({"bake", cga.path(), "--no-kernel", "--out", out.path()}).exitCode, 0);
+  const json baked = gpgpJson({"spawn", out.path(), "--axiom-size", "4,1,5"});
+  EXPECT_EQ(baked["terminals"], 1);
   EXPECT_EQ(gpgp({"bake", stack.path(), "--no-kernel", "--out", out.path()}).exitCode, 0);
 }
 

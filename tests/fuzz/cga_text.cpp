@@ -9,6 +9,7 @@ using namespace gpgp::spawn;
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   cga::CompileOptions options;
   options.path = "fuzz.cga";
+  options.graph = true;
   options.read = [](const std::string&, std::string&) { return false; };
   cga::Messages messages;
   const auto program = cga::compile(std::string(reinterpret_cast<const char*>(data), size), options, messages);

@@ -215,6 +215,34 @@ TEST(Operators, ScaleAndSwapSize) {
   EXPECT_FLOAT_EQ(d.instances[0].size[2], 2);
 }
 
+TEST(Operators, ThoseOfCornersKeepThem) {
+  // A box from (-1, -2, -3) to (1, 2, 3).
+  const auto resized = derived("A = ResizeCorner(5,-4,6) T;", makeAxiom(2, 4, 6)).instances.at(0);
+  EXPECT_FLOAT_EQ(resized.size[0], 5);
+  EXPECT_FLOAT_EQ(resized.size[1], 4);
+  EXPECT_FLOAT_EQ(resized.size[2], 6);
+  EXPECT_FLOAT_EQ(resized.transform[3], 1.5f); // -1 to 4
+  EXPECT_FLOAT_EQ(resized.transform[7], -4);   // -6 to -2
+  EXPECT_FLOAT_EQ(resized.transform[11], 0);
+  const auto grown = derived("A = GrowAlong(Y,10) T;", makeAxiom(2, 0, 6)).instances.at(0);
+  EXPECT_FLOAT_EQ(grown.size[1], 10);
+  EXPECT_FLOAT_EQ(grown.transform[7], 5);
+  const auto box = derived("A = ToFace(3) GrowAlong(Z,1) T;", makeAxiom(2, 4, 6)).instances.at(0);
+  EXPECT_EQ(box.shape, GPGP_SHAPE_BOX);
+  EXPECT_FLOAT_EQ(box.transform[11], 3.5f); // in front of the face at z = 3
+  // About z first: x goes to y, then about x: y goes to z.
+  const auto turned = derived("A = TurnCorner(90,0,90) T;", makeAxiom(2, 4, 6)).instances.at(0);
+  const float expected[12] = {0, -4, 0, -1 - 2, 0, 0, -6, -2 - 3, 2, 0, 0, -3 + 1};
+  for (int i = 0; i < 12; ++i) EXPECT_NEAR(turned.transform[i], expected[i], 1e-5) << i;
+  const auto attribute = derived("A = SetAttribute(7) T;", makeAxiom(1, 1, 1)).instances.at(0);
+  EXPECT_EQ(attribute.attribute, 7);
+  for (int face = 0; face < 6; ++face) { // as CompSplit
+    const auto all = derived("A = CompSplit() T;", makeAxiom(2, 4, 6)).instances;
+    const auto one = derived("A = ToFace(" + std::to_string(face) + ") T;", makeAxiom(2, 4, 6)).instances.at(0);
+    for (int i = 0; i < 12; ++i) EXPECT_EQ(one.transform[i], all.at(size_t(face)).transform[i]);
+  }
+}
+
 TEST(Operators, ConditionsAndExpressions) {
   const auto taken = [](const std::string& condition) {
     const auto d = derived("A = If(" + condition + ") { T | U };", makeAxiom(2, 4, 6));
@@ -232,6 +260,10 @@ TEST(Operators, ConditionsAndExpressions) {
   EXPECT_TRUE(taken("Exp(ShapePos(X) / ShapePos(X) == 0)"));
   EXPECT_TRUE(taken("Exp(ShapeSize(Z) / ShapeSize(Y) == 1.5)"));
   EXPECT_TRUE(taken("Exp(-ShapeSize(X) == -2)"));
+  EXPECT_TRUE(taken("Exp(Floor(ShapeSize(Z),ShapeSize(Y)) == 1 && Floor(ShapeSize(X)/-4,1) == -1)"));
+  EXPECT_TRUE(taken("Exp(Min(ShapeSize(X),3) == 2 && Max(ShapeSize(X),3) == 3)"));
+  EXPECT_TRUE(taken("Exp(Noise(ShapeSize(X),1) >= 0 && Noise(ShapeSize(X),1) < 1)"));
+  EXPECT_TRUE(taken("Exp(Noise(ShapeSize(X),1) != Noise(ShapeSize(X),2))"));
 }
 
 TEST(Operators, RandomRuleFollowsItsProbabilities) {

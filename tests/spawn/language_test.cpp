@@ -243,10 +243,10 @@ TEST(LanguageSuggestions, NameWhatIsMeant) {
     EXPECT_EQ(messages.size(), 1u) << rules;
     return messages.empty() ? std::string() : messages[0];
   };
-  const std::string
-      operators = "3:5: error: there is no operator ",
-      functions = " is no function; expected Exp, Rand, ShapePos, ShapeSize, ShapeRotation, ShapeNormal, ShapeSeed or "
-                  "ShapeCustomAttribute; did you mean ";
+  const std::string operators = "3:5: error: there is no operator ",
+                    functions = " is no function; expected Exp, Min, Max, Floor, Noise, Rand, ShapePos, ShapeSize, "
+                                "ShapeRotation, ShapeNormal, ShapeSeed or "
+                                "ShapeCustomAttribute; did you mean ";
   EXPECT_EQ(only("A = translate(1,0,0) T;"), operators + "'translate'; did you mean 'Translate'?");
   EXPECT_EQ(only("A = Tarnslate(1,0,0) T;"), operators + "'Tarnslate'; did you mean 'Translate'?");
   EXPECT_EQ(only("A = Subdivide(1,0,0) T;"), operators + "'Subdivide'; did you mean 'SubDiv'?");
@@ -338,9 +338,9 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"A = Translate(ShapeSize(),0,0) T;", "3:15: error: ShapeSize takes an axis, found 0 arguments"},
         Case{"A = Translate(ShapeRotation(X),0,0) T;",
              "3:15: error: ShapeRotation takes an axis and a component, found 1 argument"},
-        Case{"A = Translate(Sin(1),0,0) T;",
-             "3:15: error: 'Sin' is no function; expected Exp, Rand, ShapePos, ShapeSize, ShapeRotation, ShapeNormal, "
-             "ShapeSeed or ShapeCustomAttribute"},
+        Case{"A = Translate(Sin(1),0,0) T;", "3:15: error: 'Sin' is no function; expected Exp, Min, Max, Floor, Noise, "
+                                             "Rand, ShapePos, ShapeSize, ShapeRotation, ShapeNormal, "
+                                             "ShapeSeed or ShapeCustomAttribute; did you mean 'Min'?"},
         Case{"A = Translate(1 +,0,0) T;", "3:18: error: expected a value, found ','"},
         Case{"A = Translate(1,0,0 T;", "3:21: error: expected ',' or ')' after an argument, found 'T'"},
         Case{"A = Collider() T;", "3:5: error: Collider takes 1 argument, found 0"},

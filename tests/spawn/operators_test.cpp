@@ -232,7 +232,7 @@ spawn::Derivation derived(const std::vector<uint32_t>& words) {
 std::string shapesOf(const spawn::Derivation& d) {
   std::string text = std::to_string(d.colliders);
   for (const GpgpInstance& i : d.instances) {
-    text += " " + std::to_string(i.terminal) + "," + std::to_string(i.shape);
+    text += " " + std::to_string(i.terminal) + "," + std::to_string(i.shape) + "," + std::to_string(i.attribute);
     for (const float f : i.transform) text += "," + std::to_string(f);
     for (const float f : i.size) text += "," + std::to_string(f);
   }
@@ -348,10 +348,10 @@ TEST(OperatorTable, ExpressionsHaveEachCodeOfTwoValues) {
     expectBothWays(text, binaryText(binary, "ShapeSize(Y)", "3"));
     const std::vector<uint32_t> words = bake(text);
     const float size = derived(words).instances.at(0).size[0];
-    if (infix) {
+    if (infix || binary.code != shader::kCodeRandom) {
       EXPECT_EQ(size, shader::scaled(1, shader::combine(binary.code, 2, 3, 0)));
     }
-    if (!infix) {
+    if (binary.code == shader::kCodeRandom) {
       EXPECT_TRUE(size >= 2 && size <= 3) << size;
     }
     GpgpGrammarBuilder builder = nullptr;

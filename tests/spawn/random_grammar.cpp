@@ -100,7 +100,7 @@ private:
 
   std::string call(int depth) {
     if (context_ && below(4) == 0) return context(depth);
-    switch (below(15)) {
+    switch (below(16)) {
     case 0:
       return std::string("Translate(") + value(-2, 2) + "," + value(-2, 2) + "," + value(-2, 2) + ") " +
              successor(depth - 1);
@@ -128,10 +128,26 @@ private:
     case 13:
       return std::string("SetAsDynamicConvex") + (below(2) ? "Polygon" : "RightPrism") +
              std::string("((-0.5,-0.5),(0.5,-0.5),(0.2,0.4),(-0.3,0.5)) ") + successor(depth - 1);
+    case 14: return cornerOperator(depth);
     default: // a way back that ends: sizes shrink
       return std::string("If(Exp(ShapeSize(X) + ShapeSize(Y) + ShapeSize(Z) < ") + number(1, 4) + ")) { " + leaf() +
              std::string(" | Scale(-0.6,-0.6,-0.6) R") +
              std::to_string(phaseAt_[part()] + below(rule_ + 1 - phaseAt_[part()])) + " }";
+    }
+  }
+
+  std::string cornerOperator(int depth) {
+    switch (below(5)) {
+    case 0:
+      return std::string("ResizeCorner(") + value(0.5f, 3) + ",Max(" + value(0, 2) + ",ShapeSize(Y)),Min(" +
+             value(1, 3) + ",2)) " + successor(depth - 1);
+    case 1:
+      return std::string("GrowAlong(") + axis() + ",Exp(1 + Floor(" + value(0, 4) + ",0.75))) " + successor(depth - 1);
+    case 2:
+      return std::string("TurnCorner(") + value(-90, 90) + "," + value(-180, 180) + ",90) " + successor(depth - 1);
+    case 3:
+      return std::string("SetAttribute(Noise(ShapeCustomAttribute(),") + value(0, 2) + ")) " + successor(depth - 1);
+    default: return std::string("ToFace(") + number(0, 6) + ") " + successor(depth - 1);
     }
   }
 

@@ -65,8 +65,11 @@ private:
       return gpgpAddExpression(builder_, spawn::binaryOf(e.op).kind, left, value(e.arguments.at(1)));
     }
     if (e.name == "Exp") return value(e.arguments.at(0));
-    if (e.name == "Rand")
-      return gpgpAddExpression(builder_, GPGP_EXPRESSION_RANDOM, value(e.arguments.at(0)), value(e.arguments.at(1)));
+    for (const spawn::Binary& binary : spawn::kBinaries)
+      if (!binary.precedence && e.name == binary.spelling) {
+        const GpgpGrammarValue left = value(e.arguments.at(0));
+        return gpgpAddExpression(builder_, binary.kind, left, value(e.arguments.at(1)));
+      }
     for (const spawn::Attribute& attribute : spawn::kAttributes) {
       if (e.name != attribute.name) continue;
       uint32_t place = 0;

@@ -21,7 +21,7 @@
 GPGP_SHADER_BEGIN
 
 GPGP_CONST uint kGraphMagic = 0x67707067u; // "gppg"
-GPGP_CONST uint kGraphVersion = 6u;
+GPGP_CONST uint kGraphVersion = 7u;
 
 // header words
 GPGP_CONST uint kHeaderMagic = 0u;

@@ -28,25 +28,31 @@
   ROW(Scale, 3u, Passing, "vvv", 1, One, kAnyShape, GPGP_OPERATOR_SCALE, resize(s, GPGP_VALUES))                       \
   ROW(Extrude, 4u, Passing, "v", 1, One, kPolygonShapes, GPGP_OPERATOR_EXTRUDE, extrude(s, GPGP_VALUE))                \
   ROW(SwapSize, 5u, Passing, "aaa", 1, One, kAnyShape, GPGP_OPERATOR_SWAP_SIZE, swapSizes(s, GPGP_ARGUMENT))           \
-  LAST(SetGeometry, 6u, Passing, "sp", 1, One, kAnyShape, kNotWritten, setGeometry(s, GPGP_ARGUMENT, GPGP_ARGUMENT2))
+  ROW(ResizeCorner, 6u, Passing, "vvv", 1, One, kAnyShape, GPGP_OPERATOR_RESIZE_CORNER,                                \
+      resizeAtCorner(s, GPGP_VALUES))                                                                                  \
+  ROW(GrowAlong, 7u, Passing, "av", 1, One, kAnyShape, GPGP_OPERATOR_GROW_ALONG, grow(s, GPGP_ARGUMENT, GPGP_VALUE))   \
+  ROW(TurnCorner, 8u, Passing, "vvv", 1, One, kAnyShape, GPGP_OPERATOR_TURN_CORNER, turnAtCorner(s, GPGP_VALUES))      \
+  ROW(ToFace, 9u, Passing, "v", 1, One, kAnyShape, GPGP_OPERATOR_TO_FACE, toSideOf(s, GPGP_VALUE))                     \
+  ROW(SetAttribute, 10u, Passing, "v", 1, One, kAnyShape, GPGP_OPERATOR_SET_ATTRIBUTE, setCustom(s, GPGP_VALUE))       \
+  LAST(SetGeometry, 11u, Passing, "sp", 1, One, kAnyShape, kNotWritten, setGeometry(s, GPGP_ARGUMENT, GPGP_ARGUMENT2))
 #define GPGP_OPERATOR_TABLE(ROW, LAST)                                                                                 \
   LAST(Terminal, 0u, Ending, "", 0, One, kAnyShape, kNotWritten, )                                                     \
   GPGP_PASSING_OPERATORS(ROW, LAST)                                                                                    \
-  ROW(If, 7u, Choosing, "v", 2, Optional, kAnyShape, GPGP_OPERATOR_IF, )                                               \
-  ROW(IfSizeLess, 8u, Choosing, "av", 2, Optional, kAnyShape, GPGP_OPERATOR_IF_SIZE_LESS, )                            \
-  LAST(RandomRule, 9u, Choosing, "v:", kMany, Optional, kAnyShape, GPGP_OPERATOR_RANDOM_RULE, )                        \
-  ROW(Collider, 10u, Context, "t", 1, One, kAnyShape, GPGP_OPERATOR_COLLIDER, )                                        \
-  LAST(IfCollides, 11u, Context, "t", 2, Optional, kAnyShape, GPGP_OPERATOR_IF_COLLIDES, )                             \
-  ROW(CompSplit, 12u, Multiplying, "", 3, Fixed, ~kPolygonShapes, GPGP_OPERATOR_COMP_SPLIT, )                          \
-  ROW(SubDiv, 13u, Multiplying, "a:", kMany, Optional, kAnyShape, GPGP_OPERATOR_SUB_DIV, )                             \
-  ROW(Repeat, 14u, Multiplying, "avm", 1, Any, kAnyShape, GPGP_OPERATOR_REPEAT, )                                      \
-  LAST(Replicate, 15u, Multiplying, "", kMany, One, kAnyShape, GPGP_OPERATOR_REPLICATE, )
+  ROW(If, 12u, Choosing, "v", 2, Optional, kAnyShape, GPGP_OPERATOR_IF, )                                              \
+  ROW(IfSizeLess, 13u, Choosing, "av", 2, Optional, kAnyShape, GPGP_OPERATOR_IF_SIZE_LESS, )                           \
+  LAST(RandomRule, 14u, Choosing, "v:", kMany, Optional, kAnyShape, GPGP_OPERATOR_RANDOM_RULE, )                       \
+  ROW(Collider, 15u, Context, "t", 1, One, kAnyShape, GPGP_OPERATOR_COLLIDER, )                                        \
+  LAST(IfCollides, 16u, Context, "t", 2, Optional, kAnyShape, GPGP_OPERATOR_IF_COLLIDES, )                             \
+  ROW(CompSplit, 17u, Multiplying, "", 3, Fixed, ~kPolygonShapes, GPGP_OPERATOR_COMP_SPLIT, )                          \
+  ROW(SubDiv, 18u, Multiplying, "a:", kMany, Optional, kAnyShape, GPGP_OPERATOR_SUB_DIV, )                             \
+  ROW(Repeat, 19u, Multiplying, "avm", 1, Any, kAnyShape, GPGP_OPERATOR_REPEAT, )                                      \
+  LAST(Replicate, 20u, Multiplying, "", kMany, One, kAnyShape, GPGP_OPERATOR_REPLICATE, )
 
 // Codes that take two values and leave one. ROW(name, number, spelling, precedence, kind, code)
 //
 //   name, number  kCode + name
-//   spelling      between its values; that of LAST is the name of a function
-//   precedence    from 1 on, those that bind more are higher
+//   spelling      between its values, or the name of a function
+//   precedence    from 1 on, those that bind more are higher; 0: a function
 //   kind          GpgpExpressionKind
 //   code          of the values a and b; drawn is a random number from 0 to 1, which only LAST has
 #define GPGP_BINARY_TABLE(ROW, LAST)                                                                                   \
@@ -62,7 +68,11 @@
   ROW(GreaterEqual, 11u, ">=", 4, GPGP_EXPRESSION_GREATER_EQUAL, truthOf(a >= b))                                      \
   ROW(And, 12u, "&&", 2, GPGP_EXPRESSION_AND, truthOf(a != 0.0f && b != 0.0f))                                         \
   ROW(Or, 13u, "||", 1, GPGP_EXPRESSION_OR, truthOf(a != 0.0f || b != 0.0f))                                           \
-  LAST(Random, 14u, "Rand", 0, GPGP_EXPRESSION_RANDOM, add(a, multiply(subtract(b, a), drawn)))
+  ROW(Least, 14u, "Min", 0, GPGP_EXPRESSION_MIN, min(a, b))                                                            \
+  ROW(Most, 15u, "Max", 0, GPGP_EXPRESSION_MAX, max(a, b))                                                             \
+  ROW(Floor, 16u, "Floor", 0, GPGP_EXPRESSION_FLOOR, settle(floor(divide(a, b))))                                      \
+  ROW(Noise, 17u, "Noise", 0, GPGP_EXPRESSION_NOISE, noise(a, b))                                                      \
+  LAST(Random, 18u, "Rand", 0, GPGP_EXPRESSION_RANDOM, add(a, multiply(subtract(b, a), drawn)))
 
 // Codes that leave an attribute of the shape. ROW(name, number, spelling, axes, value, member)
 //

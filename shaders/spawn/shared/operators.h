@@ -72,6 +72,36 @@ GPGP_FN void swapSizes(GPGP_INOUT(Shape) s, uint axes) {
   s.size = vec3(component(s.size, axes & 3u), component(s.size, (axes >> 2) & 3u), component(s.size, axes >> 4));
 }
 
+// What CGA's operations do, whose scopes have their origin in a corner, the one of least coordinates.
+
+/// Sets sizes, and the corner stays. Negative sizes reach to the other side of it.
+GPGP_FN void resizeAtCorner(GPGP_INOUT(Shape) s, vec3 v) {
+  const vec3 move = vec3(multiply(subtract(v.x, s.size.x), 0.5f), multiply(subtract(v.y, s.size.y), 0.5f),
+                         multiply(subtract(v.z, s.size.z), 0.5f));
+  s.position = framePoint(s, move);
+  s.size = abs(v);
+}
+/// Sets one size, and the corner stays; the shape is a box then.
+GPGP_FN void grow(GPGP_INOUT(Shape) s, uint axis, float v) {
+  s.position = axisPoint(s, axis, multiply(subtract(v, component(s.size, axis)), 0.5f));
+  s.size = withComponent(s.size, axis, v);
+  s.geometry = kShapeBox | (kQuadPolygon << 8);
+}
+/// About the corner, by Rx Ry Rz: first about z.
+GPGP_FN void turnAtCorner(GPGP_INOUT(Shape) s, vec3 degrees) {
+  const vec3 middle = vec3(multiply(s.size.x, 0.5f), multiply(s.size.y, 0.5f), multiply(s.size.z, 0.5f));
+  s.position = framePoint(s, vec3(-middle.x, -middle.y, -middle.z));
+  // The inverse of Rz Ry Rx by the opposite angles, whose rows are the columns.
+  const Rotation r = rotationOf(vec3(-degrees.x, -degrees.y, -degrees.z));
+  Rotation inverse;
+  inverse.c0 = vec3(r.c0.x, r.c1.x, r.c2.x);
+  inverse.c1 = vec3(r.c0.y, r.c1.y, r.c2.y);
+  inverse.c2 = vec3(r.c0.z, r.c1.z, r.c2.z);
+  rotate(s, inverse);
+  s.position = framePoint(s, middle);
+}
+GPGP_FN void setCustom(GPGP_INOUT(Shape) s, float v) { s.custom = v; }
+
 GPGP_FN void setGeometry(GPGP_INOUT(Shape) s, uint shape, uint polygon) { s.geometry = shape | (polygon << 8); }
 
 /// Takes an edge: target is its word in the graph.
@@ -91,8 +121,11 @@ GPGP_FN void toPiece(GPGP_INOUT(Shape) s, uint axis, float start, float extent, 
   s.key = childKey(s.key, number);
 }
 
-/// What weights share in SubDiv.
-GPGP_FN float remainderOf(float size, float fixedLength) { return max(0.0f, subtract(size, fixedLength)); }
+/// What weights share in SubDiv. A millionth of the whole is taken for rounding.
+GPGP_FN float remainderOf(float size, float fixedLength) {
+  const float rest = subtract(size, fixedLength);
+  return rest > multiply(size, 1.0e-6f) ? rest : 0.0f;
+}
 /// A part of SubDiv: one of fixed and share is zero. What comes before it, likewise.
 struct Part {
   float fixedLength;
@@ -191,6 +224,8 @@ GPGP_FN void toBoxSide(GPGP_INOUT(Shape) s, uint face) {
   s.size = size;
   s.geometry = kShapeQuad | (kQuadPolygon << 8);
 }
+
+GPGP_FN void toSideOf(GPGP_INOUT(Shape) s, float face) { toBoxSide(s, uint(clamp(floor(face), 0.0f, 5.0f))); }
 
 /// A side of a prism whose polygon (x, y) lies at local (x, ., -y), counter-clockwise seen from above.
 GPGP_FN void toPrismSide(GPGP_GRAPH GPGP_INOUT(Shape) s, uint side) {

@@ -67,13 +67,13 @@ std::string typeOf(const BakeOptions& options, const std::string& file, std::str
   }
   std::string ending = std::filesystem::path(file).extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (ending == ".pga" || ending == ".gml") return "grammar";
+  if (ending == ".pga" || ending == ".gml" || ending == ".cga") return "grammar";
 #ifdef GPGP_CLI_SPAWN
   expectGraphLanguage(file);
 #endif
   if (ending == ".svg" || ending == ".svgz") return "drawing";
   if (ending == ".ttf" || ending == ".otf" || ending == ".ttc" || ending == ".otc") return "font";
-  throw Usage(file + ": neither .pga nor .gml nor .svg nor a font; --type says what it is");
+  throw Usage(file + ": neither .pga nor .gml nor .cga nor .svg nor a font; --type says what it is");
 }
 
 /// Of the baked file.

@@ -44,6 +44,13 @@ std::string print(const Messages& messages) {
   return first;
 }
 
+/// One line.
+std::string misfit(const GraphText& graph) {
+  std::string line = graph.file;
+  if (graph.place.line) line += ":" + std::to_string(graph.place.line) + ":" + std::to_string(graph.place.column);
+  return line + (line.empty() ? "" : ": ") + graph.why + " has no operator on the GPU";
+}
+
 std::vector<AttributeValue> attributeValues(const std::vector<std::string>& texts) {
   std::vector<AttributeValue> result;
   for (const std::string& text : texts) {
@@ -149,7 +156,41 @@ bool isCga(const std::string& file) {
   return end == ".cga";
 }
 
-Outcome spawnCga(const CgaOptions& options) {
+std::string cgaGraph(const std::string& file, const std::string& text, const std::vector<std::string>& attributes) {
+  CompileOptions compile{file, {}, {}, filesOnDisk(), true, attributeValues(attributes)};
+  Messages messages;
+  const std::optional<Program> program = spawn::cga::compile(text, compile, messages);
+  const std::string wrong = print(messages);
+  if (!program) throw Failure(wrong);
+  checkAttributes(compile.attributes, *program);
+  if (program->graph.text.empty()) throw Failure(misfit(program->graph) + ", so that it has no operator graph");
+  return program->graph.text;
+}
+
+namespace {
+/// Why these axioms cannot be the graph's; empty: they can.
+std::string whyNot(const CgaAxioms& start, const Program& program) {
+  if (program.graph.text.empty()) return misfit(program.graph);
+  for (size_t i = 0; i < start.axioms.size(); ++i) {
+    const Axiom& axiom = start.axioms[i];
+    const std::string where = axiom.where.empty() ? std::string() : axiom.where + ": ";
+    if (!axiom.points.empty()) return where + "an axiom that is a polygon and no rectangle derives on the CPU";
+    for (const AttributeValue& value : axiom.attributes)
+      for (const AttributeInfo& attribute : program.attributes)
+        if (attribute.name == value.name && !attribute.isConstant)
+          return where + "an axiom with a value of its own for '" + value.name + "' derives on the CPU";
+    if (!axiom.streetWidths.empty()) return where + "an axiom with streets derives on the CPU";
+    if (!start.rules[i].empty() && start.rules[i] != start.rules[0])
+      return where + "axioms that start at several rules derive on the CPU";
+    if (program.graph.needsUpright && axiom.axisY != glm::vec3(0, 1, 0))
+      return where + "an axiom that does not stand upright derives on the CPU, as the program uses world axes";
+  }
+  return {};
+}
+} // namespace
+
+Outcome spawnCga(const CgaOptions& options, const CommonOptions& common) {
+  const bool isCpu = common.device == "cpu", isGpu = !isCpu && !common.device.empty();
   const std::string text = host::readText(options.file);
   DeriveOptions derive;
   derive.attributes = attributeValues(options.attributes);
@@ -162,7 +203,7 @@ Outcome spawnCga(const CgaOptions& options) {
   if (options.maxGeometry) derive.maxGeometryMiB = options.maxGeometry;
   if (options.maxWork) derive.maxWork = uint64_t{options.maxWork} * 1'000'000;
 
-  CompileOptions compile{options.file, options.start, options.style, filesOnDisk()};
+  CompileOptions compile{options.file, options.start, options.style, filesOnDisk(), !isCpu, derive.attributes};
   Messages compiled;
   std::optional<Program> program = spawn::cga::compile(text, compile, compiled);
   const std::string wrong = print(compiled);
@@ -173,9 +214,29 @@ Outcome spawnCga(const CgaOptions& options) {
     if (rule.parameters == 0) names.push_back(rule.name);
   const CgaAxioms start = cgaAxioms(options, names);
 
+  std::optional<Program> firstRule;
+  if (!start.rules.empty() && !start.rules[0].empty() && !isCpu) {
+    Messages same; // as above
+    CompileOptions first = compile;
+    first.start = start.rules[0];
+    firstRule = spawn::cga::compile(text, first, same);
+  }
+  const Program& graphed = firstRule ? *firstRule : *program;
+  std::string why = isCpu ? "--device cpu" : whyNot(start, graphed);
+  if (why.empty() && (options.maxDepth || options.maxShapes || options.maxFaces || options.maxVertices ||
+                      options.maxGeometry || options.maxWork))
+    why = "--max-depth, --max-shapes, --max-faces, --max-vertices, --max-geometry and --max-work are for the CPU";
+  std::optional<GpuDerivation> gpu;
+  if (why.empty()) gpu = deriveOnGpu(options, common, graphed, start.axioms, derive);
+  if (why.empty() && !gpu) why = options.file + ": rules nest in themselves without end, or too deep for the GPU";
+  if (isGpu && !gpu) throw Failure(why + "; without --device it derives on the CPU");
+  const bool onGpu = gpu.has_value();
+  if (!onGpu && (options.repeat > 1 || options.schedule != "default"))
+    throw Usage("--repeat and --schedule are for what derives on the GPU; " + why);
+
   // Axioms of one rule after the other; each rule has a program, for which attributes it needs.
   std::map<std::string, std::vector<Axiom>> byRule;
-  for (size_t i = 0; i < start.axioms.size(); ++i) byRule[start.rules[i]].push_back(start.axioms[i]);
+  for (size_t i = 0; i < start.axioms.size() && !onGpu; ++i) byRule[start.rules[i]].push_back(start.axioms[i]);
   Derivation all;
   Messages messages;
   double milliseconds = 0;
@@ -191,7 +252,12 @@ Outcome spawnCga(const CgaOptions& options) {
     milliseconds += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     join(all, std::move(part));
   }
-  const std::string failed = print(messages);
+  std::string failed = print(messages);
+  if (gpu) {
+    all = std::move(gpu->all);
+    milliseconds = gpu->milliseconds;
+    failed = gpu->failure;
+  }
   if (!options.image.empty()) paint(options, all);
   if (!options.out.empty()) writeGlb(options.out, all);
 
@@ -205,8 +271,14 @@ Outcome spawnCga(const CgaOptions& options) {
   outcome.failure = failed;
   std::ostringstream said;
   said << all.leaves.size() << " terminals (" << all.triangles << " triangles) from " << start.axioms.size()
-       << (start.axioms.size() == 1 ? " axiom" : " axioms") << ", " << all.shapes << " shapes in " << all.depth + 1
-       << " generations on the CPU, " << milliseconds << " ms\n";
+       << (start.axioms.size() == 1 ? " axiom" : " axioms");
+  if (gpu)
+    said << " in " << gpu->rounds << " rounds on " << gpu->device << "; schedule " << gpu->schedule << ", "
+         << milliseconds << " ms\n";
+  else
+    said << ", " << all.shapes << " shapes in " << all.depth + 1 << " generations on the CPU, " << milliseconds
+         << " ms\n";
+  if (!onGpu && !isCpu) said << "on the CPU: " << printable(why) << '\n';
   Json ruleList = Json::array(), reports = Json::object(), statistics = Json::object(), prints = Json::array();
   for (const auto& [name, counts] : rules) {
     said << "  " << counts.first << "  " << printable(name) << '\n';
@@ -229,7 +301,8 @@ Outcome spawnCga(const CgaOptions& options) {
   if (!options.out.empty()) said << "triangles: " << options.out << '\n';
   outcome.text = said.str();
   outcome.json = {{"grammar", options.file},
-                  {"device", Json()},
+                  {"device", gpu ? Json(gpu->device) : Json()},
+                  {"on_cpu_because", onGpu ? Json() : Json(printable(why))},
                   {"status", failed.empty() ? "GPGP_SUCCESS" : "GPGP_BUDGET_EXCEEDED"},
                   {"axioms", start.axioms.size()},
                   {"seed", options.seed},
@@ -244,7 +317,7 @@ Outcome spawnCga(const CgaOptions& options) {
                   {"report_statistics", statistics},
                   {"prints", prints},
                   {"attributes", attributesOf(*program)},
-                  {"cpu_ms", milliseconds},
+                  {gpu ? "gpu_ms_median" : "cpu_ms", milliseconds},
                   {"image", options.image.empty() ? Json() : Json(options.image)},
                   {"out", options.out.empty() ? Json() : Json(options.out)}};
   return outcome;

@@ -1,5 +1,6 @@
 // `gpgp spawn` of .cga files: compiles, derives on the CPU, and says what came out.
 #pragma once
+#include "cli/shared/command.h"
 #include "cli/spawn/scene_picture.h"
 #include "spawn/cga/derive.h"
 
@@ -20,11 +21,36 @@ struct CgaOptions {
   uint32_t maxDepth = 0;                                                ///< 0: the default
   uint64_t maxShapes = 0;                                               ///< 0: the default
   uint32_t maxFaces = 0, maxVertices = 0, maxGeometry = 0, maxWork = 0; ///< MiB; million steps; 0: the default
+  uint32_t repeat = 1;                                                  ///< on the GPU
+  std::string schedule = "default";                                     ///< on the GPU: default or interpreter
 };
 
 bool isCga(const std::string& file);
-/// Throws Usage and Failure.
-Outcome spawnCga(const CgaOptions& options);
+/// On the GPU where the program has an operator graph that derives all of the axioms, else on the CPU. --device cpu
+/// takes the CPU, another one the GPU or nothing. Throws Usage and Failure.
+Outcome spawnCga(const CgaOptions& options, const CommonOptions& common);
+/// The operator graph of a .cga file as PGA-shape, from its start rule. attributes: NAME=VALUE. Throws Usage, and
+/// Failure where it has none.
+std::string cgaGraph(const std::string& file, const std::string& text, const std::vector<std::string>& attributes);
+
+// --- cga_gpu.cpp ---
+/// What the GPU did.
+struct GpuDerivation {
+  spawn::cga::Derivation all;
+  std::string device, schedule;
+  double milliseconds = 0; ///< median
+  uint32_t rounds = 0;
+  uint64_t instances = 0;
+  std::string failure; ///< which budget was exceeded
+};
+/// Derives by the graph, and makes of instances what the CPU makes. None: rules nest in themselves without end, or too
+/// deep. It throws Failure where the CPU evaluator of graphs derives something else.
+std::optional<GpuDerivation> deriveOnGpu(const CgaOptions& options, const CommonOptions& common,
+                                         const spawn::cga::Program& program,
+                                         const std::vector<spawn::cga::Axiom>& axioms,
+                                         const spawn::cga::DeriveOptions& derive);
+/// The axiom for a graph.
+GpgpAxiom graphAxiom(const spawn::cga::Axiom& axiom, uint32_t id);
 
 // --- cga_axioms.cpp ---
 struct CgaAxioms {

@@ -33,6 +33,25 @@ Axiom rectangle(const GpgpAxiom& from, const std::string& where) {
   return axiom;
 }
 
+/// A polygon that is a level rectangle becomes one, with the scope that the polygon would have: x along its first edge.
+void toRectangle(Axiom& axiom) {
+  if (axiom.points.size() != 4 || axiom.loopSizes.size() != 1 || !axiom.streetWidths.empty()) return;
+  const auto& p = axiom.points;
+  const glm::vec3 x = p[1] - p[0], z = p[0] - p[3];
+  const float width = glm::length(x), depth = glm::length(z), rounding = 1e-4f * (width + depth);
+  const bool isLevel = p[0].y == p[1].y && p[1].y == p[2].y && p[2].y == p[3].y;
+  const bool isParallel = glm::length(p[2] - p[3] - x) <= rounding;
+  if (!isLevel || !isParallel || !(width > 0) || !(depth > 0)) return;
+  if (std::fabs(glm::dot(x, z)) > 1e-4f * width * depth) return;
+  axiom.axisX = x / width;
+  axiom.axisY = {0, 1, 0};
+  axiom.axisZ = glm::cross(axiom.axisX, axiom.axisY);
+  axiom.size = {width, 0, depth};
+  axiom.origin = p[3];
+  axiom.points.clear();
+  axiom.loopSizes.clear();
+}
+
 /// Reads what GeoJSON may hold. All errors are said with the number of the feature.
 class GeoJson {
 public:
@@ -181,6 +200,7 @@ private:
           axiom.points.push_back({static_cast<float>((places_[at].x - origin.x) * scale.x),
                                   static_cast<float>(places_[at].z),
                                   static_cast<float>((origin.y - places_[at].y) * scale.y)});
+    for (Axiom& axiom : result_.axioms) toRectangle(axiom);
   }
 
   const CgaOptions& options_;

@@ -2,6 +2,7 @@
 
 #include "cli/shared/command.h"
 #include "cli/shared/messages.h"
+#include "cli/spawn/cga.h"
 #include "spawn/language/build_graph.h"
 
 #include <cctype>
@@ -81,11 +82,6 @@ struct Errors {
 void expectGraphLanguage(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (ending == ".cga")
-    throw Usage(file +
-                ": a .cga file derives on the CPU and has no operator graph, so that it is not baked, tuned or "
-                "printed; `gpgp spawn " +
-                file + "` derives it, and --out writes its triangles");
   if (ending == ".lsys")
     throw Usage(file + ": an L-system has no operator graph, so that it is not baked, tuned or printed; `gpgp spawn " +
                 file + "` derives it, and gpgpCompileLsystem() makes the data that an engine loads");
@@ -99,11 +95,20 @@ Blob compile(std::span<const GrammarText> grammars, bool linked, const std::vect
   assignments.reserve(set.size());
   for (const std::string& text : set) assignments.push_back(parseAssignment(text, linked));
   std::vector<std::vector<GpgpVariable>> variables(grammars.size());
+  std::vector<std::string> graphs(grammars.size()); // of .cga files
+  for (size_t i = 0; i < grammars.size(); ++i)
+    if (isCga(grammars[i].file.path) && !grammars[i].text.starts_with("gppg")) {
+      std::vector<std::string> attributes;
+      for (const Assignment& a : assignments)
+        if (!linked || nameOf(grammars[i].file) == a.grammar)
+          attributes.push_back(a.name + a.text.substr(a.text.find('=')));
+      graphs[i] = cgaGraph(grammars[i].file.path, grammars[i].text, attributes);
+    }
   for (const Assignment& a : assignments) {
     bool found = false;
     for (size_t i = 0; i < grammars.size(); ++i) {
       if (linked && nameOf(grammars[i].file) != a.grammar) continue;
-      variables[i].push_back({a.name.c_str(), a.value});
+      if (graphs[i].empty()) variables[i].push_back({a.name.c_str(), a.value}); // else it is in the graph
       found = true;
     }
     if (found) continue;
@@ -118,11 +123,13 @@ Blob compile(std::span<const GrammarText> grammars, bool linked, const std::vect
     GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
     source.name = grammars[i].file.path.c_str();
     if (!grammars[i].file.alias.empty()) source.alias = grammars[i].file.alias.c_str();
-    if (grammars[i].text.starts_with("gppg"))
+    if (!graphs[i].empty())
+      source.text = graphs[i].data();
+    else if (grammars[i].text.starts_with("gppg"))
       source.baked = grammars[i].text.data();
     else
       source.text = grammars[i].text.data();
-    source.size = grammars[i].text.size();
+    source.size = graphs[i].empty() ? grammars[i].text.size() : graphs[i].size();
     source.variables = variables[i].data();
     source.variableCount = static_cast<uint32_t>(variables[i].size());
     source.messageUserData = &errors;

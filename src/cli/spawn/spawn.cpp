@@ -271,13 +271,11 @@ bool hasDynamicTerminals(const spawn::Graph& graph) {
 Outcome spawnFile(const SpawnOptions& options, const CommonOptions& common) {
   if (options.grammars.size() > 1) throw Usage("a .cga file is derived alone; it imports others itself");
   if (!options.set.empty()) throw Usage("attributes of .cga files are set by --attr NAME=VALUE, not by --set");
-  if (options.output != "instances" || options.sorted || options.nodes || options.instanced ||
-      options.schedule != "default" || options.repeat > 1 || options.maxInstances || options.maxColliders ||
-      options.slice)
-    throw Usage("--output, --sorted, --out-nodes, --instanced, --schedule, --repeat, --slice, --max-instances and "
-                "--max-colliders are "
-                "for grammars that derive on the GPU");
-  (void)common;
+  if (options.output != "instances" || options.sorted || options.nodes || options.instanced || options.maxInstances ||
+      options.maxColliders || options.slice || (options.schedule != "default" && options.schedule != "interpreter"))
+    throw Usage("--output, --sorted, --out-nodes, --instanced, --slice, --max-instances, --max-colliders and schedules "
+                "other than default and interpreter are not for .cga files; `gpgp bake` makes grammars of them that take "
+                "these");
   CgaOptions cga;
   cga.file = options.grammars[0];
   cga.start = options.start;
@@ -298,7 +296,9 @@ Outcome spawnFile(const SpawnOptions& options, const CommonOptions& common) {
   cga.maxVertices = options.maxVertices;
   cga.maxGeometry = options.maxGeometry;
   cga.maxWork = options.maxWork;
-  return spawnCga(cga);
+  cga.repeat = options.repeat;
+  cga.schedule = options.schedule;
+  return spawnCga(cga, common);
 }
 
 /// An L-system, of the options that mean something to one.

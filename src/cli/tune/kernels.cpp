@@ -85,6 +85,12 @@ BakedGraph bakeGraph(std::span<const GrammarText> texts, bool linked, const std:
   return {std::move(words), std::move(*graph)};
 }
 
+BakedGraph bakeText(const std::string& file, const std::string& text) {
+  GrammarText grammar{GrammarFile(file), text};
+  grammar.file.path += ".pga"; // what it is now
+  return bakeGraph({&grammar, 1}, false, {});
+}
+
 std::string joined(const std::vector<std::string>& files) {
   std::string text;
   for (const std::string& file : files) text += (text.empty() ? "" : " + ") + file;

@@ -30,6 +30,8 @@ struct BakedGraph {
 BakedGraph bakeGraph(const std::vector<std::string>& files, const std::vector<std::string>& set);
 /// The same of what was read.
 BakedGraph bakeGraph(std::span<const GrammarText> texts, bool linked, const std::vector<std::string>& set);
+/// Of the text of a grammar that a file has in another form.
+BakedGraph bakeText(const std::string& file, const std::string& text);
 /// For messages: a.pga + b.pga; and for JSON: a string, of several files a list.
 std::string joined(const std::vector<std::string>& files);
 Json jsonOf(const std::vector<std::string>& files);

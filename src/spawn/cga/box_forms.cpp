@@ -112,11 +112,11 @@ float BoxForms::volume(const Form& form) const {
   return form.mesh == box ? e.x * e.y * e.z : 0.0f;
 }
 
-Form sliceBox(const Form& form, uint32_t axis, float from, float to) {
+Form sliceBox(const Form& form, uint32_t axis, float from, float extent) {
   Form piece = form;
   const vec3 direction = axis == 0 ? form.scope.axisX : axis == 1 ? form.scope.axisY : form.scope.axisZ;
   piece.scope.origin += direction * from;
-  piece.scope.size[static_cast<int>(axis)] = to - from;
+  piece.scope.size[static_cast<int>(axis)] = extent;
   piece.scale = piece.scope.size;
   return piece;
 }

@@ -25,13 +25,18 @@ struct BoxForms {
   /// As toComponent() does for faces.
   Form face(const Form& form, uint32_t face) const;
   vec3 normal(const Form& form, uint32_t face) const;
+  /// Of a face as operator graphs count them: top, bottom, back, front, left, right; the one of a rectangle is 0.
+  uint32_t number(const Form& form, uint32_t face) const {
+    constexpr uint32_t kNumbers[6] = {1, 3, 5, 2, 4, 0};
+    return form.mesh == box ? kNumbers[face] : 0;
+  }
   /// Along the normal of a rectangle, up from it; false: it is a box.
   bool extrude(Form& form, float distance) const;
   float area(const Form& form) const;
   float volume(const Form& form) const;
 };
 
-/// Between two places along an axis; the form fills its scope.
-Form sliceBox(const Form& form, uint32_t axis, float from, float to);
+/// From a place along an axis on; the form fills its scope.
+Form sliceBox(const Form& form, uint32_t axis, float from, float extent);
 
 } // namespace gpgp::spawn::cga

@@ -2,6 +2,7 @@
 #include "spawn/cga/compile.h"
 
 #include "spawn/cga/compiler.h"
+#include "spawn/cga/lower.h"
 #include "spawn/language/suggest.h"
 
 #include <algorithm>
@@ -76,13 +77,14 @@ void Compiler::definition(Entity& entity) {
     expression(*local.value, context);
     emit(kCgaSetLocalCode, {static_cast<uint32_t>(context.locals.size())});
     context.locals.push_back(local.name);
+    if (!d.value) path(Operation::path_drawn);
   }
   if (d.value) {
     expression(*d.value, context);
     emit(kCgaReturnCode);
   } else {
     const uint32_t end = newLabel();
-    body(d.body, context, true, end);
+    body(d.body, context, true, true, end);
     place(end);
     emit(kCgaEndCode);
   }
@@ -260,6 +262,7 @@ std::optional<Program> Compiler::run(const std::string& text) {
     messages_.error(options_.path, {}, "the compiled program is wrong: " + wrong + "; please report this");
     return std::nullopt;
   }
+  if (options_.graph) program_.graph = Lowering(options_.attributes, program_).run(*start);
   return std::move(program_);
 }
 

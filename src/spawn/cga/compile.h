@@ -6,10 +6,12 @@
 namespace gpgp::spawn::cga {
 
 struct CompileOptions {
-  std::string path;  ///< of the main file, for messages and for what it imports
-  std::string start; ///< a rule without parameters; empty: what @StartRule marks, else the first
-  std::string style; ///< of the main file; empty: none
-  ReadFile read;     ///< files that are imported
+  std::string path;   ///< of the main file, for messages and for what it imports
+  std::string start;  ///< a rule without parameters; empty: what @StartRule marks, else the first
+  std::string style;  ///< of the main file; empty: none
+  ReadFile read;      ///< files that are imported
+  bool graph = false; ///< Program::graph is made, with these values of attributes
+  std::vector<AttributeValue> attributes;
 };
 
 /// None where there are errors; messages then holds at least one. Warnings leave a program that derives.

@@ -25,10 +25,11 @@ const char* nameOf(Type type) {
 }
 } // namespace
 
-/// The module that a path with prefixes leads to, and the name behind them. isMissing: by way of an import that could
-/// not be read.
 Module* Compiler::resolve(const std::string& path, const Context& context, std::string& last, bool& isMissing) {
-  Module* module = context.scope;
+  return resolvePath(path, context.scope, last, isMissing);
+}
+
+Module* resolvePath(const std::string& path, Module* module, std::string& last, bool& isMissing) {
   last = path;
   isMissing = false;
   for (size_t dot = last.find('.'); dot != std::string::npos; dot = last.find('.')) {
@@ -189,9 +190,18 @@ Type Compiler::choices(const Expression& e, const Context& context) {
   return type;
 }
 
-void Compiler::arguments(std::string_view name, const std::vector<ExpressionPtr>& arguments, const Context& context) {
+size_t placeOf(std::string_view operation, size_t argument, size_t count) {
+  if (operation == "extrude" || operation == "report") return 0;
+  return operation == "r" && count == 4 && argument ? argument - 1 : argument;
+}
+
+void Compiler::arguments(std::string_view name, const std::vector<ExpressionPtr>& arguments, const Context& context,
+                         bool isOperation) {
   const uint32_t words = wordArguments(name, arguments.size());
-  for (size_t i = 0; i < arguments.size(); ++i) expression(*arguments[i], context, i < 32 && ((words >> i) & 1u));
+  for (size_t i = 0; i < arguments.size(); ++i) {
+    if (isOperation) drawsOf(*arguments[i], placeOf(name, i, arguments.size()));
+    expression(*arguments[i], context, i < 32 && ((words >> i) & 1u));
+  }
 }
 
 Type Compiler::name(const Expression& e, const Context& context, bool selectorFirst) {

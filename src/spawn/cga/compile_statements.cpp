@@ -3,6 +3,7 @@
 #include "spawn/language/suggest.h"
 
 #include <algorithm>
+#include <span>
 
 namespace gpgp::spawn::cga {
 
@@ -19,17 +20,82 @@ void Compiler::checkCount(const std::string& file, Place place, std::string_view
           ", not " + std::to_string(count));
 }
 
-void Compiler::body(const Body& body, const Context& context, bool isLast, uint32_t end) {
+namespace {
+/// Whether random numbers may be drawn for a value.
+bool mayDraw(const Expression& e) {
+  if (e.kind == Expression::Kind::stochastic) return true;
+  if (e.kind == Expression::Kind::name && (e.isCall || e.text.find('.') == std::string::npos)) return true;
+  for (const ExpressionPtr& a : e.arguments)
+    if (a && mayDraw(*a)) return true;
+  for (const Choice& c : e.choices)
+    if ((c.condition && mayDraw(*c.condition)) || (c.value && mayDraw(*c.value))) return true;
+  return false;
+}
+} // namespace
+
+Makes whatMakes(const Statement& s) {
+  const auto either = [](bool shapes) { return shapes ? Makes::shapes : Makes::nothing; };
+  if (s.kind != Statement::Kind::call) return either(s.kind == Statement::Kind::leaf);
+  const auto operation = findOperation(s.name);
+  if (!operation) return either(s.name != "NIL" && s.name != "set" && !isUnsupportedOperation(s.name));
+  if (*operation == Operation::report_) return Makes::report;
+  if (*operation >= Operation::inline_ && *operation <= Operation::intersect_) return Makes::nothing;
+  return either(operationInfo(*operation).block != Block::none);
+}
+
+Makes whatMake(std::span<const Statement> statements) {
+  Makes most = Makes::nothing;
+  for (const Statement& s : statements) {
+    most = std::max(most, whatMakes(s));
+    for (const Branch& branch : s.branches) most = std::max(most, whatMake(branch.body));
+  }
+  return most;
+}
+
+size_t bracketEnd(const Body& body, size_t push) {
+  int32_t depth = 0;
+  for (size_t i = push; i < body.size(); ++i) {
+    depth += body[i].kind == Statement::Kind::push ? 1 : body[i].kind == Statement::Kind::pop ? -1 : 0;
+    if (depth == 0) return i;
+  }
+  return body.size();
+}
+
+bool forks(Makes makes, const Body& body, size_t next, bool isTail) {
+  return makes == Makes::report || (makes == Makes::shapes && isFollowed(body, next, isTail));
+}
+
+bool isFollowed(const Body& body, size_t next, bool isTail) {
+  return next < body.size() ? body[next].kind != Statement::Kind::pop : !isTail;
+}
+
+/// The numbers of a value that is one of several are counted from its place on, as those of an operator's parameters.
+void Compiler::drawsOf(const Expression& e, size_t place) {
+  if (place == 0 || !mayDraw(e)) return;
+  emit(kCgaPushFloatCode, {floatBitsToUint(static_cast<float>(place))});
+  emit(kCgaOperationCode, {static_cast<uint32_t>(Operation::path_drawsFrom), 1});
+}
+
+void Compiler::body(const Body& body, const Context& context, bool isLast, bool isTail, uint32_t end) {
   int32_t brackets = 0;
+  std::vector<bool> ways; // of brackets: whether they are one
   for (size_t i = 0; i < body.size(); ++i) {
     const Statement& s = body[i];
     const bool last = isLast && i + 1 == body.size() && brackets == 0;
+    const bool isForked = cga::forks(whatMakes(s), body, i + 1, isTail && brackets == 0);
+    if (isForked) path(Operation::path_fork);
     switch (s.kind) {
-    case Statement::Kind::push:
+    case Statement::Kind::push: {
+      const size_t close = bracketEnd(body, i);
+      const bool isWay =
+          cga::forks(whatMake(std::span(body).subspan(i, close - i)), body, close + 1, isTail && brackets == 0);
+      ways.push_back(isWay);
+      if (isWay) path(Operation::path_fork);
       ++brackets;
       source(context, s.place);
       emit(kCgaPushShapeCode);
       break;
+    }
     case Statement::Kind::pop:
       if (--brackets < 0) {
         messages_.error(context.file(), s.place, "this ] has no [ before it");
@@ -37,21 +103,28 @@ void Compiler::body(const Body& body, const Context& context, bool isLast, uint3
       }
       source(context, s.place);
       emit(kCgaPopShapeCode);
+      if (!ways.empty()) {
+        if (ways.back()) path(Operation::path_rest);
+        ways.pop_back();
+      }
       break;
     case Statement::Kind::cases:
-    case Statement::Kind::stochastic: branches(s, context, last, end); break;
+    case Statement::Kind::stochastic:
+      branches(s, context, last, !isFollowed(body, i + 1, isTail && brackets == 0), end);
+      break;
     default: statement(s, context, last); break;
     }
+    if (isForked) path(Operation::path_rest);
   }
   if (brackets > 0) messages_.warning(context.file(), body.front().place, "a [ in this rule has no ] behind it");
 }
 
-void Compiler::branches(const Statement& s, const Context& context, bool isLast, uint32_t end) {
+void Compiler::branches(const Statement& s, const Context& context, bool isLast, bool isTail, uint32_t end) {
   const bool isCase = s.kind == Statement::Kind::cases;
   const uint32_t behind = isLast ? end : newLabel();
   bool hasElse = false;
   double sum = 0;
-  if (!isCase) emit(kCgaDrawCode);
+  if (!isCase) emit(kCgaDrawCode), path(Operation::path_drawn);
   for (const Branch& branch : s.branches) {
     const uint32_t next = newLabel();
     if (branch.condition) {
@@ -59,13 +132,14 @@ void Compiler::branches(const Statement& s, const Context& context, bool isLast,
       if (condition == Type::string || condition == Type::array)
         messages_.error(context.file(), branch.condition->place, "a condition or percentage is a string or an array");
       if (!isCase && branch.condition->kind == Expression::Kind::number) sum += branch.condition->number;
+      if (isCase && mayDraw(*branch.condition)) path(Operation::path_drawn);
       emit(isCase ? kCgaJumpUnlessCode : kCgaChooseCode);
       emitLabel(next);
     } else {
       hasElse = true;
       if (!isCase) emit(kCgaPopCode);
     }
-    body(branch.body, context, isLast, end);
+    body(branch.body, context, isLast, isTail, end);
     if (branch.condition) {
       emit(kCgaJumpCode);
       emitLabel(behind);
@@ -104,7 +178,7 @@ void Compiler::statement(const Statement& s, const Context& context, bool isLast
     return;
   }
   if (s.hasBlock) return block(s, *operation, context);
-  arguments(s.name, s.arguments, context);
+  arguments(s.name, s.arguments, context, true);
   source(context, s.place);
   emit(kCgaOperationCode, {static_cast<uint32_t>(*operation), static_cast<uint32_t>(s.arguments.size())});
 }
@@ -189,6 +263,7 @@ void Compiler::set(const Statement& s, const Context& context) {
     expression(*s.arguments[1], context);
     source(context, s.place);
     emit(kCgaSetAttributeCode, {entity->slot});
+    if (mayDraw(*s.arguments[1])) path(Operation::path_drawn);
     return;
   }
   expression(*s.arguments[1], context);
@@ -222,6 +297,7 @@ void Compiler::selectors(const std::vector<Part>& parts, const Context& context,
     numbers.push_back(part.selector ? count : kCgaNoSelector);
     if (!part.selector) continue;
     const bool isShort = part.selector->text.size() == 1; // rather a name of the file
+    if (!selectorFirst) drawsOf(*part.selector, numbers.size() - 1);
     const Type type = expression(*part.selector, context, selectorFirst && !isShort);
     if (type == Type::string || type == Type::array)
       messages_.error(context.file(), part.selector->place,
@@ -288,7 +364,7 @@ void Compiler::parts(const PendingPart& pending) {
     const size_t visible = pending.context.locals.size();
     chunk(label, pending.context.name, visible, visible);
     const uint32_t end = newLabel();
-    body(*code, pending.context, true, end);
+    body(*code, pending.context, true, true, end);
     place(end);
     emit(kCgaEndCode);
   }

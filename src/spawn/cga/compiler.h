@@ -5,6 +5,7 @@
 #include "spawn/cga/names.h"
 
 #include <set>
+#include <span>
 #include <string_view>
 #include <unordered_map>
 
@@ -12,6 +13,27 @@ namespace gpgp::spawn::cga {
 
 /// What is known of a value before it runs.
 enum class Type : uint8_t { unknown, number, boolean, string, array };
+
+// What random numbers depend on is the path to a shape. These say where it forks, for the compiler and for what makes
+// operator graphs (lower.h): what makes shapes and is followed by anything is one way, what follows the other.
+
+/// Whether shapes come of a statement, or a report does, which is a way as well.
+enum class Makes : uint8_t { nothing, report, shapes };
+Makes whatMakes(const Statement& s);
+/// The most of all of them; of branches: of those in them.
+Makes whatMake(std::span<const Statement> statements);
+/// The ] that a [ ends with, or the body's size.
+size_t bracketEnd(const Body& body, size_t push);
+/// Whether anything comes at or behind a place, within brackets before their end. isTail: nothing follows the body.
+bool isFollowed(const Body& body, size_t next, bool isTail);
+/// Whether what makes this much is a way of its own, beside what is at or behind the next place.
+bool forks(Makes makes, const Body& body, size_t next, bool isTail);
+
+/// The place of an operation's argument among the values of the operator that a graph has for it.
+size_t placeOf(std::string_view operation, size_t argument, size_t count);
+/// The module that a path with prefixes leads to, and the name behind them. isMissing: by way of an import that could
+/// not be read.
+Module* resolvePath(const std::string& path, Module* module, std::string& last, bool& isMissing);
 
 /// Where code is: which names are visible, and whose messages it gives.
 struct Context {
@@ -56,7 +78,8 @@ private:
   // compile_expressions.cpp
   Type expression(const Expression& e, const Context& context, bool selectorFirst = false);
   Type name(const Expression& e, const Context& context, bool selectorFirst);
-  void arguments(std::string_view name, const std::vector<ExpressionPtr>& arguments, const Context& context);
+  void arguments(std::string_view name, const std::vector<ExpressionPtr>& arguments, const Context& context,
+                 bool isOperation = false);
   Type binary(const Expression& e, const Context& context);
   Type choices(const Expression& e, const Context& context);
   bool literal(const Entity& entity, Type& type);
@@ -65,9 +88,11 @@ private:
   void nothing() { emit(shader::kCgaPushFloatCode, {0}); }
 
   // compile_statements.cpp
-  void body(const Body& body, const Context& context, bool isLast, uint32_t end);
+  void body(const Body& body, const Context& context, bool isLast, bool isTail, uint32_t end);
   void statement(const Statement& s, const Context& context, bool isLast);
-  void branches(const Statement& s, const Context& context, bool isLast, uint32_t end);
+  void branches(const Statement& s, const Context& context, bool isLast, bool isTail, uint32_t end);
+  void path(Operation operation) { emit(shader::kCgaOperationCode, {static_cast<uint32_t>(operation), 0}); }
+  void drawsOf(const Expression& e, size_t place);
   void block(const Statement& s, Operation operation, const Context& context);
   void set(const Statement& s, const Context& context);
   bool invoke(const Statement& s, const Context& context, bool isLast);

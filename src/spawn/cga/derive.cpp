@@ -42,6 +42,7 @@ void append(Derivation& all, Derivation&& part, const std::vector<uint32_t>& pla
     leaf.firstIndex += firstIndex;
     all.leaves.push_back(leaf);
   }
+  all.scopes.insert(all.scopes.end(), part.scopes.begin(), part.scopes.end());
   all.vertices.insert(all.vertices.end(), part.vertices.begin(), part.vertices.end());
   for (const uint32_t i : part.indices) all.indices.push_back(firstVertex + i);
   for (const auto& [name, report] : part.reports) {

@@ -16,13 +16,6 @@
 
 namespace gpgp::spawn::cga {
 
-/// A value that an attribute is set to from outside; what it is taken for follows from its text: a number, true or
-/// false, else a string.
-struct AttributeValue {
-  std::string name; ///< with the prefixes of imports
-  std::string text;
-};
-
 /// A start shape. World space, metres, y up.
 struct Axiom {
   std::vector<glm::vec3> points;   ///< of a polygon, empty: a rectangle
@@ -55,6 +48,7 @@ struct DeriveOptions {
   uint64_t maxWork = 1'000'000'000;    ///< of one axiom's geometry: words written and corners looked at
   uint32_t threads = 0;                ///< 0: as many as the machine has
   bool keepTriangles = true;           ///< else they are only counted
+  bool keepScopes = false;             ///< Derivation::scopes
   std::vector<AttributeValue> attributes;
   /// Reads a file for i(); false: it cannot, and text says why.
   std::function<bool(const std::string& path, Asset& asset, std::string& text)> loadAsset;
@@ -67,6 +61,13 @@ struct Leaf {
   uint32_t texture = 0; ///< of Derivation::names; 0: none
   glm::vec4 color{1};   ///< sRGB, and opacity
   uint32_t firstIndex = 0, indexCount = 0;
+};
+
+/// Where a leaf is, as an instance of an operator graph says it.
+struct LeafScope {
+  glm::vec3 centre, x, y, z; ///< world space; axes of the length of its extents. A rectangle faces z, of length 1
+  glm::uvec2 key; ///< of the path: instanceKey() of shaders/spawn/shared/shape.h makes GpgpInstance::key of it
+  bool isQuad = false;
 };
 
 struct Vertex {
@@ -82,6 +83,7 @@ struct Report {
 struct Derivation {
   std::vector<Leaf> leaves;       ///< in the order of axioms
   std::vector<std::string> names; ///< 0 is empty
+  std::vector<LeafScope> scopes;  ///< of the leaves, where DeriveOptions::keepScopes asks for them
   std::vector<Vertex> vertices;
   std::vector<uint32_t> indices;
   std::map<std::string, Report> reports;

@@ -1,5 +1,6 @@
 // The queue: from an axiom to its leaves.
 #include "spawn/cga/deriver.h"
+#include "spawn/shared/shape.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,6 +72,7 @@ void Deriver::run(const Axiom& axiom, uint32_t number, Derivation& result, Messa
     if (!noRoom_) break;
     // The pool had no room for this axiom's geometry: once more, in a larger one.
     result.leaves.resize(firstLeaf);
+    if (options_.keepScopes) result.scopes.resize(firstLeaf);
     result.vertices.resize(firstVertex);
     result.indices.resize(firstIndex);
     const uint32_t most = static_cast<uint32_t>(
@@ -123,7 +125,7 @@ bool Deriver::start(const Axiom& axiom, uint32_t number) {
   if (!axiom.streetWidths.empty()) tagStreets(axiom);
   shape.form = shape_.form;
   start_ = shape.form;
-  shape.key = uvec2(mixBits(axiom.seed), mixBits(axiom.seed ^ 0x9e3779b9u));
+  shape.key = childKey(uvec2(axiom.seed, 0u), 0u);
   (void)number;
   resetPivot(shape);
   shape_ = shape;
@@ -132,7 +134,6 @@ bool Deriver::start(const Axiom& axiom, uint32_t number) {
   if (stopped_ || noRoom_) return true;
   const RuleInfo& rule = program_.rules[program_.start];
   shape = shape_;
-  shape.key = uvec2(mixBits(axiom.seed), mixBits(axiom.seed ^ 0x9e3779b9u));
   shape.draws = 0;
   shape.chunk = rule.chunk;
   queue_.push_back(shape);
@@ -165,12 +166,13 @@ void Deriver::attributes(const Axiom& axiom) {
       else
         value = stringValue(text);
     } else if (info.chunk) {
-      shape_.key = childKey(key, 0x40000000u + slot);
+      attributeSlot_ = slot;
       shape_.draws = 0;
       hasHull_ = false;
       chunk_ = info.chunk;
       at_ = info.chunk;
       const uint32_t how = cgaRun(info.chunk, 0);
+      attributeSlot_ = kNoSlot;
       if (how != kCgaDone) {
         if (!stopped_ && !noRoom_)
           fail(how == kCgaTooDeep
@@ -185,6 +187,45 @@ void Deriver::attributes(const Axiom& axiom) {
     blocks_[shape_.values + slot] = value;
   }
   shape_.key = key;
+  shape_.draws = 0;
+  drawn_ = false;
+}
+
+float Deriver::cgaRandom() {
+  drawn_ = true;
+  if (attributeSlot_ == kNoSlot) return drawnNumber(shape_.key, shape_.draws++);
+  // Of attributes, by what each shape of a graph knows of its axiom (axiomShape() in shape.h).
+  const float own = unitFloat(childSeed(axiom_->seed, 0u));
+  return noise(own, static_cast<float>(kDrawsOfSlot * attributeSlot_ + shape_.draws++));
+}
+
+void Deriver::settleDraws() {
+  if (drawn_) shape_.key = drawnKey(shape_.key);
+  drawn_ = false;
+  shape_.draws = 0;
+}
+
+bool Deriver::path(Operation operation, const Arguments& a) {
+  switch (operation) {
+  case Operation::path_fork:
+    forks_.push_back(shape_.key);
+    shape_.key = childKey(shape_.key, 0);
+    shape_.children = 0;
+    break;
+  case Operation::path_rest:
+    if (forks_.empty()) break; // the compiler makes pairs
+    shape_.key = childKey(forks_.back(), 1);
+    shape_.children = 0;
+    forks_.pop_back();
+    break;
+  case Operation::path_drawsFrom:
+    shape_.draws = static_cast<uint32_t>(number(a[0])) << shader::kDrawsOfParameter;
+    return true;
+  default: settleDraws(); return true;
+  }
+  shape_.draws = 0;
+  drawn_ = false;
+  return true;
 }
 
 void Deriver::derive() {
@@ -206,8 +247,9 @@ bool Deriver::runRule(const Shape& shape) {
   at_ = shape.chunk;
   if (!enters(chunk_, shape.depth)) return false;
   ruleScope_ = shape_.form.scope;
-  made_ = hasHull_ = false;
+  made_ = hasHull_ = drawn_ = false;
   states_.clear();
+  forks_.clear();
   for (uint32_t i = 0; i < shape.count; ++i) stack_[stackBase_ + i] = queueValues_[shape.first + i];
   const uint32_t how = cgaRun(chunk_, stackBase_);
   if (how == kCgaDone) return true;
@@ -313,12 +355,14 @@ bool Deriver::addChild(Shape& shape, uint32_t body, uint32_t base) {
 
 bool Deriver::cgaInvoke(uint32_t chunk, uint32_t first, uint32_t count) {
   (void)count;
-  return addChild(child(), chunk, first);
+  settleDraws();
+  Shape& shape = child();
+  shape.key = shape_.key; // a way of its own leads here, or nothing follows
+  return addChild(shape, chunk, first);
 }
 
 bool Deriver::cgaGoOn(uint32_t chunk) {
-  shape_.key = childKey(shape_.key, shape_.children);
-  shape_.draws = shape_.children = 0;
+  settleDraws();
   ++shape_.depth;
   chunk_ = chunk;
   ruleScope_ = shape_.form.scope;
@@ -354,9 +398,8 @@ bool Deriver::cgaPushShape() {
 bool Deriver::cgaPopShape() {
   if (states_.empty()) return true; // the compiler said so
   const Shape& saved = states_.back();
-  const uint32_t draws = shape_.draws, children = shape_.children;
+  const uint32_t children = shape_.children;
   shape_ = saved;
-  shape_.draws = draws; // no number is drawn twice
   shape_.children = children;
   states_.pop_back();
   hasHull_ = false;
@@ -393,6 +436,20 @@ void Deriver::writeTriangles(const Form& form, Derivation& result) {
   for (const uint32_t i : indices) result.indices.push_back(first + i);
 }
 
+LeafScope Deriver::scopeOf(const Shape& shape) const {
+  const bool isFlat = shape.form.mesh == boxes_.flat && boxes_.is(shape.form);
+  const bool isQuad = isFlat || (shape.form.mesh == boxes_.upright && boxes_.is(shape.form));
+  const Scope s = isFlat ? boxes_.face(shape.form, 0).scope : shape.form.scope;
+  LeafScope leaf;
+  leaf.x = s.axisX * s.size.x;
+  leaf.y = s.axisY * s.size.y;
+  leaf.z = s.axisZ * (isQuad && s.size.z == 0 ? 1.0f : s.size.z);
+  leaf.centre = s.origin + (leaf.x + leaf.y + s.axisZ * s.size.z) * 0.5f;
+  leaf.key = shape.key;
+  leaf.isQuad = isQuad;
+  return leaf;
+}
+
 void Deriver::writeLeaves(Derivation& result, uint32_t number, size_t firstLeaf) {
   (void)firstLeaf;
   const uint64_t before = result.triangles;
@@ -411,6 +468,7 @@ void Deriver::writeLeaves(Derivation& result, uint32_t number, size_t firstLeaf)
     if (shape.form.mesh) writeTriangles(shape.form, result);
     leaf.indexCount = static_cast<uint32_t>(result.indices.size()) - leaf.firstIndex;
     result.leaves.push_back(leaf);
+    if (options_.keepScopes) result.scopes.push_back(scopeOf(shape));
     const uint64_t bytes = sizeof(Vertex) * (result.vertices.size() - firstVertex) +
                            sizeof(uint32_t) * (result.indices.size() - firstIndex);
     if (bytes > uint64_t{options_.maxGeometryMiB} << 20)

@@ -82,7 +82,7 @@ private:
   uint32_t cgaMostTurns() const { return options_.maxInstructions; }
   CgaValue cgaAttribute(uint32_t slot) const;
   void cgaSetAttribute(uint32_t slot, const CgaValue& v);
-  float cgaRandom() { return drawnNumber(shape_.key, shape_.draws++); }
+  float cgaRandom();
   CgaValue cgaAddOther(const CgaValue& a, const CgaValue& b);
   CgaValue cgaCompareOther(uint32_t code, const CgaValue& a, const CgaValue& b);
   CgaValue cgaEach(uint32_t code, const CgaValue& a, const CgaValue& b);
@@ -118,6 +118,7 @@ private:
   void addLeaf(uint32_t name);
   void writeLeaves(Derivation& result, uint32_t number, size_t firstLeaf);
   void writeTriangles(const Form& form, Derivation& result);
+  LeafScope scopeOf(const Shape& shape) const;
 
   // --- for operations ---
   float number(const CgaValue& v) const { return cgaNumber(v); }
@@ -135,6 +136,9 @@ private:
   /// A child of the shape that runs; its form and numbers are the caller's.
   Shape& child();
   bool addChild(Shape& shape, uint32_t body, uint32_t base);
+  /// Behind what drew numbers at the current key: the next ones are drawn at another.
+  void settleDraws();
+  bool path(Operation operation, const Arguments& a);
 
   // Operations, by GPGP_CGA_OPERATIONS.
 #define GPGP_CGA_none(name) bool name##_(const Arguments& a);
@@ -191,6 +195,7 @@ private:
   CgaValue floatValue(float x) const { return cgaFloatValue(x); }
 
   static constexpr uint32_t kStackSize = 8192;
+  static constexpr uint32_t kDrawsOfSlot = 1024;
   static constexpr uint32_t kMostStates = 64; ///< [ in [
   static constexpr uint32_t kLongestChain = 24;
   static constexpr uint32_t kMostNested = 32; ///< derivations within rules
@@ -213,6 +218,10 @@ private:
   std::array<CgaValue, kStackSize> stack_;
   std::vector<uint32_t> frames_;
   std::vector<Shape> states_;
+  std::vector<uvec2> forks_;         // keys where ways fork
+  bool drawn_ = false;               // numbers, since the last settleDraws()
+  uint32_t attributeSlot_ = kNoSlot; // whose value is worked out: it draws from the axiom's seed
+  static constexpr uint32_t kNoSlot = UINT32_MAX;
 
   std::vector<Shape> queue_, next_;
   std::vector<CgaValue> queueValues_, nextValues_;

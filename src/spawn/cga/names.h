@@ -100,6 +100,14 @@ namespace gpgp::spawn::cga {
   X(material_rgb)                                                                                                      \
   X(seedian)
 
+// What the compiler writes between operations, for random numbers; no name of the language leads here. Paths are those
+// of operator graphs (docs/internals/spawn.md): what a program draws on the CPU, its graph draws on the GPU.
+#define GPGP_CGA_PATHS(X)                                                                                              \
+  X(fork)      /* what comes next is the first of two ways from here */                                                \
+  X(rest)      /* and now the second one */                                                                            \
+  X(drawn)     /* numbers that were drawn are over: the key changes */                                                 \
+  X(drawsFrom) /* the numbers of the value that comes next are counted from its own place on */
+
 // Functions that ask the shape, the file system, or compute with strings and arrays: name, fewest and most values.
 #define GPGP_CGA_FUNCTIONS(X)                                                                                          \
   X(str, 1, 1)                                                                                                         \
@@ -250,7 +258,10 @@ enum class Operation : uint32_t {
 #define GPGP_CGA_ENUMERATOR(name) set_##name,
       GPGP_CGA_SETTABLE(GPGP_CGA_ENUMERATOR)
 #undef GPGP_CGA_ENUMERATOR
-          count
+#define GPGP_CGA_ENUMERATOR(name) path_##name,
+          GPGP_CGA_PATHS(GPGP_CGA_ENUMERATOR)
+#undef GPGP_CGA_ENUMERATOR
+              count
 };
 enum class Function : uint32_t {
 #define GPGP_CGA_ENUMERATOR(name, least, most) name##_,

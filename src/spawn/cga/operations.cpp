@@ -99,10 +99,11 @@ bool Deriver::check(Status status, const char* what) {
 /// Of the same handedness; extents may differ.
 void Deriver::setScope(const Scope& scope) {
   const vec3 before = shape_.form.scope.size;
+  const bool isBox = boxes_.is(shape_.form);
   for (int axis = 0; axis < 3; ++axis)
     if (before[axis] != scope.size[axis] && before[axis] > 0)
       shape_.form.scale[axis] = multiply(shape_.form.scale[axis], divide(scope.size[axis], before[axis]));
-  if (boxes_.is(shape_.form)) shape_.form.scale = scope.size;
+  if (isBox) shape_.form.scale = scope.size;
   shape_.form.scope = scope;
 }
 
@@ -134,10 +135,18 @@ bool Deriver::cgaOperation(uint32_t operation, uint32_t first, uint32_t count) {
   const Arguments arguments{&stack_[first], count};
   if (stopped_) return false;
   hasHull_ = false;
-  if (operation >= std::size(kFunctions)) return setAttributeOfShape(static_cast<Operation>(operation), arguments[0]);
+  if (operation >= static_cast<uint32_t>(Operation::path_fork))
+    return path(static_cast<Operation>(operation), arguments);
+  if (operation >= std::size(kFunctions)) {
+    settleDraws(); // before seedian sets the key
+    return setAttributeOfShape(static_cast<Operation>(operation), arguments[0]);
+  }
   operation_ = operationInfo(static_cast<Operation>(operation)).name;
   const uint32_t mesh = shape_.form.mesh;
-  return (this->*kFunctions[operation])(arguments) && (shape_.form.mesh == mesh || (isWithin(shape_.form) && works()));
+  const bool goesOn =
+      (this->*kFunctions[operation])(arguments) && (shape_.form.mesh == mesh || (isWithin(shape_.form) && works()));
+  settleDraws();
+  return goesOn;
 }
 
 bool Deriver::cgaBlock(uint32_t operation, uint32_t first, uint32_t count, uint32_t table, uint32_t base) {
@@ -157,7 +166,9 @@ bool Deriver::cgaBlock(uint32_t operation, uint32_t first, uint32_t count, uint3
                       operation <= static_cast<uint32_t>(Operation::intersect_);
   made_ = made_ || !goesOn; // though it may make nothing
   operation_ = operationInfo(static_cast<Operation>(operation)).name;
-  return (this->*kFunctions[operation])({&stack_[first], count}, table, base);
+  const bool isDone = (this->*kFunctions[operation])({&stack_[first], count}, table, base);
+  settleDraws();
+  return isDone;
 }
 
 // ---------------------------------------------------------------- transformations

@@ -13,9 +13,11 @@ bool Deriver::deriveNow(uint32_t body, uint32_t base, uint32_t top, std::vector<
   const uint32_t chunk = chunk_, at = at_, stackBase = stackBase_;
   const std::string_view operation = operation_;
   std::vector<Shape> states, queue, next, outer;
+  std::vector<uvec2> forks;
   std::vector<CgaValue> queueValues, nextValues;
   const auto exchange = [&] {
     states.swap(states_);
+    forks.swap(forks_);
     queue.swap(queue_);
     next.swap(next_);
     outer.swap(leaves_);
@@ -23,8 +25,11 @@ bool Deriver::deriveNow(uint32_t body, uint32_t base, uint32_t top, std::vector<
     nextValues.swap(nextValues_);
   };
   exchange();
-  const bool begins = addChild(child(), body, base);
+  Shape& begin = child();
+  begin.key = childKey(begin.key, 0x10000000u); // no way of the rule itself
+  const bool begins = addChild(begin, body, base);
   const Shape whole = shape_;
+  const bool drawn = drawn_;
   queue_.swap(next_);
   queueValues_.swap(nextValues_);
   stackBase_ = top;
@@ -34,6 +39,7 @@ bool Deriver::deriveNow(uint32_t body, uint32_t base, uint32_t top, std::vector<
   exchange();
   leaves.swap(outer);
   shape_ = whole;
+  drawn_ = drawn;
   ruleScope_ = ruleScope;
   made_ = made;
   chunk_ = chunk;

@@ -88,7 +88,9 @@ bool Deriver::split_(const Arguments& a, uint32_t table, uint32_t base) {
   const Form whole = shape_.form;
   const float length = whole.scope.size[static_cast<int>(axis)];
   std::vector<Piece> pieces;
-  if (!layOut(readParts(words_, table, a.values, length), length, kMostPieces, pieces)) {
+  const std::vector<SplitPart> parts = readParts(words_, table, a.values, length);
+  const bool isPlain = layOutPlain(parts, length, shape_.key, kMostPieces, pieces);
+  if (!isPlain && !layOut(parts, length, kMostPieces, pieces)) {
     fail("a split has more than " + std::to_string(kMostPieces) + " parts");
     return false;
   }
@@ -98,9 +100,9 @@ bool Deriver::split_(const Arguments& a, uint32_t table, uint32_t base) {
     const Piece& p = pieces[i];
     Form form;
     if (isBox) {
-      form = sliceBox(whole, axis, p.from, p.to);
+      form = sliceBox(whole, axis, p.from, isPlain ? p.extent : p.to - p.from);
     } else if (whole.mesh == 0) {
-      form = sliceBox(whole, axis, p.from, p.to);
+      form = sliceBox(whole, axis, p.from, p.to - p.from);
       form.mesh = 0;
     } else {
       const Status status = slice(pool_, whole, axis, p.from, p.to, adjust, form);
@@ -111,6 +113,7 @@ bool Deriver::split_(const Arguments& a, uint32_t table, uint32_t base) {
       }
     }
     Shape& part = child();
+    if (isPlain) part.key = p.key;
     part.form = form;
     part.splitIndex = i;
     part.splitTotal = static_cast<uint32_t>(pieces.size());
@@ -140,7 +143,7 @@ bool Deriver::splitArea_(const Arguments& a, uint32_t table, uint32_t base) {
     if (!(to > from)) continue;
     Form form;
     if (boxes_.is(whole)) {
-      form = sliceBox(whole, axis, from, to);
+      form = sliceBox(whole, axis, from, to - from);
     } else {
       const Status status = slice(pool_, whole, axis, from, to, adjust, form);
       if (status == kGeometryEmpty) continue;
@@ -317,6 +320,7 @@ bool Deriver::comp_(const Arguments& a, uint32_t table, uint32_t base) {
         continue;
       }
       Shape& part = child();
+      if (isBox && !together) part.key = childKey(shape_.key, boxes_.number(shape_.form, selected[p][i]));
       part.form = form;
       part.compIndex = i;
       part.compTotal = total;
@@ -432,6 +436,7 @@ bool Deriver::setbackPerEdge_(const Arguments& a, uint32_t table, uint32_t base)
     for (uint32_t v = 0; v < count; ++v) stack_[top + v] = stack_[base + v];
     const uint32_t how = cgaRun(chunk, top);
     shape_ = whole;
+    drawn_ = false;
     if (how != kCgaDone) {
       fail("the distance of setbackPerEdge has no value");
       return false;

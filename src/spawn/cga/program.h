@@ -3,6 +3,7 @@
 #include "spawn/cga/program_format.h"
 #include "spawn/language/diagnostics.h"
 
+#include <glm/vec4.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,30 @@ struct AnnotationValue {
 struct AttributeAnnotation {
   std::string name;
   std::vector<AnnotationValue> values;
+};
+
+/// A value that an attribute is set to from outside; what it is taken for follows from its text: a number, true or
+/// false, else a string.
+struct AttributeValue {
+  std::string name; ///< with the prefixes of imports
+  std::string text;
+};
+
+/// What a terminal of a program's operator graph is.
+struct GraphTerminal {
+  std::string name; ///< of the rule that a shape ends in, or of the report
+  glm::vec4 color{1};
+  std::string texture, asset;
+  bool isReport = false; ///< no shape: GpgpInstance::attribute is a value of the report
+};
+/// The operator graph that derives what a program derives, as PGA-shape. Axioms are boxes without height, the
+/// rectangles that they stand on, with the attribute NaN.
+struct GraphText {
+  std::string text;                     ///< empty: there is none
+  std::vector<GraphTerminal> terminals; ///< by index of the terminal lines, T0, T1, ...
+  bool needsUpright = false;            ///< it is right for axioms whose y axis is the world's alone
+  std::string why, file;                ///< without: which construct has no operator, and where
+  Place place;
 };
 
 /// A slot of the attributes of a shape.
@@ -55,6 +80,7 @@ struct Program {
   std::vector<std::string> files;
   std::vector<SourceOf> sources; ///< in the order of words
   std::string folder;            ///< of the main file, with a / at its end: where paths of assets begin
+  GraphText graph;               ///< where CompileOptions::graph asks for it
 
   const SourceOf* sourceOf(uint32_t at) const;
 };

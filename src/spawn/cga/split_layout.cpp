@@ -116,4 +116,127 @@ bool layOut(const std::vector<SplitPart>& parts, float length, size_t most, std:
   return !(length > 0) || Layout(length, most, pieces).list(parts, static_cast<double>(length));
 }
 
+// ---------------------------------------------------------------- by the operators of graphs
+
+namespace {
+using namespace shader;
+
+bool isPlainPart(const SplitPart& part) {
+  return part.kind == SplitPart::Kind::absolute || part.kind == SplitPart::Kind::floating;
+}
+bool arePlain(const std::vector<SplitPart>& parts) {
+  return !parts.empty() && parts.size() <= kMaxSuccessors && std::all_of(parts.begin(), parts.end(), isPlainPart);
+}
+
+class PlainLayout {
+public:
+  PlainLayout(size_t most, std::vector<Piece>& pieces) : most_(most), pieces_(pieces) {}
+
+  /// SubDiv. A repeated group among parts of fixed length takes what they leave.
+  void list(const shader::Shape& s, const std::vector<SplitPart>& parts) {
+    float fixedLength = 0, weights = 0;
+    for (const SplitPart& part : parts) count(part, fixedLength, weights);
+    const float remainder = remainderOf(s.size.x, fixedLength);
+    shader::Part place{0, 0, 0, 0};
+    float before = 0, weightBefore = 0;
+    for (uint32_t i = 0; i < parts.size(); ++i) {
+      const float own = parts[i].kind == SplitPart::Kind::repeated ? 1.0f : max(0.0f, parts[i].size);
+      const bool isFixed = parts[i].kind == SplitPart::Kind::absolute;
+      place.fixedLength = isFixed ? own : 0;
+      place.share = !isFixed && own > 0 ? shader::divide(own, weights) : 0;
+      place.fixedBefore = before;
+      place.shareBefore = weightBefore > 0 ? shader::divide(weightBefore, weights) : 0;
+      count(parts[i], before, weightBefore);
+      if (!(own > 0) || (!isFixed && !(remainder > 0))) continue;
+      shader::Shape child = s;
+      if (!toPart(child, 0, remainder, place, i)) continue;
+      if (parts[i].kind == SplitPart::Kind::repeated)
+        group(child, parts[i].parts);
+      else
+        piece(child, parts[i].body);
+    }
+  }
+  /// Repeat, and SubDiv within its copies.
+  void group(const shader::Shape& s, const std::vector<SplitPart>& parts) {
+    float fixedLength = 0, weights = 0;
+    for (const SplitPart& part : parts) count(part, fixedLength, weights);
+    shader::Shape whole = s;
+    float extent = fixedLength;
+    if (weights > 0) {
+      extent = shader::divide(s.size.x, repetitions(s.size.x, fixedLength, weights));
+    } else {
+      // Those that fit whole, at least one.
+      const float fits =
+          max(1.0f, settle(floor(shader::divide(add(s.size.x, multiply(fixedLength, 1e-4f)), fixedLength))));
+      const float length = multiply(fits, fixedLength);
+      const float left = remainderOf(s.size.x, length);
+      if (!(fixedLength > 0) || !toPart(whole, 0, left, {length, 0, 0, 0}, 0)) return;
+    }
+    const Fan fan = repetitionOf(whole.size.x, kRepeatAdjustToFill, extent);
+    if (fan.extent < 0 || fan.count > most_) overflows = true;
+    for (uint32_t i = 0; i < fan.count && !overflows; ++i) {
+      shader::Shape copy = whole;
+      toRepeat(copy, 0, kRepeatAdjustToFill, fan.count, fan.extent, i);
+      if (parts.size() == 1)
+        piece(copy, parts[0].body);
+      else
+        list(copy, parts);
+    }
+  }
+  bool overflows = false;
+
+private:
+  static void count(const SplitPart& part, float& fixedLength, float& weights) {
+    const float own = part.kind == SplitPart::Kind::repeated ? 1.0f : max(0.0f, part.size);
+    float& sum = part.kind == SplitPart::Kind::absolute ? fixedLength : weights;
+    sum = add(sum, own);
+  }
+  void piece(const shader::Shape& s, uint32_t body) {
+    if (pieces_.size() >= most_) overflows = true;
+    if (overflows) return;
+    Piece piece;
+    piece.from = s.position.x - s.size.x * 0.5f;
+    piece.to = piece.from + s.size.x;
+    piece.body = body;
+    piece.extent = s.size.x;
+    piece.key = s.key;
+    pieces_.push_back(piece);
+  }
+  size_t most_;
+  std::vector<Piece>& pieces_;
+};
+} // namespace
+
+float repetitions(float length, float fixed, float floating) {
+  const float fits = settle(floor(shader::divide(length, add(fixed, floating))));
+  const float more = subtract(shader::divide(length, fits), fixed);
+  const float less = subtract(shader::divide(length, add(fits, 1.0f)), fixed);
+  return max(1.0f, add(fits, multiply(more, less) > multiply(floating, floating) ? 1.0f : 0.0f));
+}
+
+bool layOutPlain(const std::vector<SplitPart>& parts, float length, shader::uvec2 key, size_t most,
+                 std::vector<Piece>& pieces) {
+  pieces.clear();
+  const auto isGroup = [](const SplitPart& part) { return part.kind == SplitPart::Kind::repeated; };
+  const auto groups = std::count_if(parts.begin(), parts.end(), isGroup);
+  for (const SplitPart& part : parts)
+    if (isGroup(part) ? !arePlain(part.parts)
+                      : !isPlainPart(part) || (groups && part.kind == SplitPart::Kind::floating))
+      return false;
+  if (groups > 1 || parts.empty() || parts.size() > kMaxSuccessors) return false;
+  shader::Shape s{};
+  s.axisX = vec3(1, 0, 0);
+  s.axisY = vec3(0, 1, 0);
+  s.axisZ = vec3(0, 0, 1);
+  s.position = vec3(length * 0.5f, 0, 0);
+  s.size = vec3(length, 1, 1);
+  s.key = key;
+  PlainLayout layout(most, pieces);
+  if (groups && parts.size() == 1)
+    layout.group(s, parts[0].parts);
+  else
+    layout.list(s, parts);
+  return !layout.overflows;
+}
+
 } // namespace gpgp::spawn::cga

@@ -5,6 +5,7 @@
 // lies beyond the end is cut off; sizes of 0 and less give no part.
 #pragma once
 #include "spawn/cga/program_format.h"
+#include "spawn/shared/operators.h"
 
 #include <vector>
 
@@ -21,9 +22,20 @@ struct SplitPart {
 struct Piece {
   float from, to;
   uint32_t body;
+  float extent = 0;           ///< of layOutPlain(): to - from, but for rounding
+  shader::uvec2 key = {0, 0}; ///< of layOutPlain(): of the path
 };
 
 /// False: there are more than most pieces.
 bool layOut(const std::vector<SplitPart>& parts, float length, size_t most, std::vector<Piece>& pieces);
+
+/// The same by the operators of operator graphs, SubDiv and Repeat, so that a graph cuts the same parts to the last bit
+/// and draws the same random numbers for them. False where the parts are none that they cut: several groups, groups
+/// beside floating sizes, groups in groups; or where there are more than most pieces. key: of the shape.
+bool layOutPlain(const std::vector<SplitPart>& parts, float length, shader::uvec2 key, size_t most,
+                 std::vector<Piece>& pieces);
+
+/// How often a repeated group is there whose sizes are fixed and floating in all. floating: > 0
+float repetitions(float length, float fixed, float floating);
 
 } // namespace gpgp::spawn::cga

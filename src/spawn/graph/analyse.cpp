@@ -156,6 +156,8 @@ uint32_t outputOf(const Node& node, uint32_t edge, uint32_t shape) {
   switch (node.op) {
   case kOpExtrude: return bit(isPolygon(shape) ? prismOf(shape) : shape);
   case kOpSetGeometry: return bit(node.argument);
+  case kOpGrowAlong: return bit(kShapeBox);
+  case kOpToFace: return bit(kShapeQuad);
   case kOpCompSplit:
     if (edge == 2) return isPrism(shape) ? bit(kShapeQuad) : 0u;
     if (isPrism(shape)) return bit(polygonOf(shape));

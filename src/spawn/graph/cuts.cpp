@@ -132,6 +132,8 @@ private:
         to = pieceShape(shape) | piece << 8;
       } else if (node.op == kOpSetGeometry) {
         to = node.argument | node.argument2 << 8;
+      } else if (node.op == kOpGrowAlong || node.op == kOpToFace) {
+        to = (node.op == kOpGrowAlong ? kShapeBox : kShapeQuad) | kQuadPolygon << 8;
       } else if (node.op == kOpExtrude && isPolygon(shape)) {
         to = prismOf(shape) | polygon << 8;
       } else if (node.op == kOpCompSplit && e == 2) {

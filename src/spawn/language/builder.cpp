@@ -408,7 +408,7 @@ GpgpGrammarValue GPGP_CALL gpgpAddExpression(GpgpGrammarBuilder builder, GpgpExp
                           "there is no value " + std::to_string(value.id) + " in this builder"))
         return GpgpGrammarValue GPGP_GRAMMAR_NUMBER(0);
     const uint32_t size = 1 + builder->sizeOf(left) + builder->sizeOf(right);
-    if (!builder->check(kind <= GPGP_EXPRESSION_CORNER, "gpgpAddExpression",
+    if (!builder->check(kind <= GPGP_EXPRESSION_NOISE, "gpgpAddExpression",
                         "there is no kind of expression " + std::to_string(kind)) ||
         !builder->check(size <= kMaxExpressionValues, "gpgpAddExpression",
                         "the expression has more than 1024 values; expected a shorter one"))

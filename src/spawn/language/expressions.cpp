@@ -82,7 +82,7 @@ float ExpressionCompiler::fold(Place place, uint32_t op, float left, float right
 }
 
 ExpressionCompiler::Code ExpressionCompiler::join(Place place, uint32_t op, Code left, Code right) {
-  if (op == kCodeDivide && right.isConstant && right.value == 0) { // whatever the shape is
+  if ((op == kCodeDivide || op == kCodeFloor) && right.isConstant && right.value == 0) { // whatever the shape is
     diagnostics_.error(place, "this divides by 0");
     return number(0);
   }
@@ -110,10 +110,11 @@ ExpressionCompiler::Code ExpressionCompiler::call(const Expression& e) {
     return false;
   };
   if (e.name == "Exp") return wants(1) ? compile(e.arguments[0]) : number(0);
-  if (e.name == binaryOf(kCodeRandom).spelling) {
+  for (const Binary& binary : kBinaries) {
+    if (binary.precedence || e.name != binary.spelling) continue;
     if (!wants(2)) return number(0);
-    Code low = compile(e.arguments[0]);
-    return join(e.place, kCodeRandom, std::move(low), compile(e.arguments[1]));
+    Code left = compile(e.arguments[0]);
+    return join(e.place, binary.code, std::move(left), compile(e.arguments[1]));
   }
   for (const Attribute& a : kAttributes)
     if (e.name == a.name) return attribute(e, a.code, a.axes);

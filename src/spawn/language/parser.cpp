@@ -3,8 +3,8 @@
 // A syntax error ends what it stands in: an argument up to its ',' or ')', a successor up to its '|' or '}', or the
 // statement up to its ';' or to where another one begins. What was read before stays in the tree, where it is checked
 // as the rest is, and what was not is marked, so that nobody reports that it is missing.
-#include "spawn/graph/operators.h"
 #include "spawn/language/lexer.h"
+#include "spawn/language/spellings.h"
 #include "spawn/language/syntax.h"
 
 namespace gpgp::spawn {
@@ -247,7 +247,8 @@ private:
   void branch(Branch& result) {
     // A label is an expression before a colon. A name alone may be a successor.
     const bool name = peek().kind == TokenKind::name;
-    const bool labelCall = isName("Rand") || isName("Exp") || peek().text.substr(0, 5) == "Shape";
+    bool labelCall = peek().text.substr(0, 5) == "Shape";
+    forFunctionNames([&](const char* function) { labelCall = labelCall || isName(function); });
     if (isName("else") && peek(1).kind == TokenKind::colon) {
       next();
       next();

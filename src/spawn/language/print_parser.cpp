@@ -384,10 +384,11 @@ private:
       expect(TokenKind::close, "')'");
       return {std::move(inner.words), kParameterProgram};
     }
-    if (word.text == binaryOf(kCodeRandom).spelling) {
+    for (const Binary& binary : kBinaries) {
+      if (binary.precedence || word.text != binary.spelling) continue;
       Value left = value(depth + 1);
       expect(TokenKind::comma, "','");
-      return close(std::move(left), kCodeRandom, value(depth + 1));
+      return close(std::move(left), binary.code, value(depth + 1));
     }
     const auto attribute = std::find_if(std::begin(kAttributes), std::end(kAttributes),
                                         [&](const Attribute& a) { return word.text == a.name; });

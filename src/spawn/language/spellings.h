@@ -43,7 +43,8 @@ inline bool isOperatorName(const std::string& name) {
 /// Calls for the name of each function that a value can be.
 template <class Call> void forFunctionNames(const Call& call) {
   call("Exp");
-  call(binaryOf(shader::kCodeRandom).spelling);
+  for (const Binary& binary : kBinaries)
+    if (!binary.precedence) call(binary.spelling);
   for (const Attribute& attribute : kAttributes) call(attribute.name);
 }
 
