@@ -82,8 +82,8 @@ typedef struct GpgpEvaluationInfo {
   const GpgpAxiom* axioms;
   uint32_t axiomCount;
   GpgpEvaluationFlags flags;
-  const uint32_t (*keys)[2]; /**< Optional. Only terminals with one of these path keys (GpgpInstance::key) are kept. */
-  uint32_t keyCount;
+  const uint32_t (*keys)[2]; /**< NULL: all. Only terminals with one of these path keys (GpgpInstance::key) are kept. */
+  uint32_t keyCount;         /**< 0 with keys: none is kept. */
   const GpgpSpawnBounds* region; /**< Optional. Only terminals whose world-space box touches this one are kept. */
   /** Optional. The kept instances come with vertices in this layout, as a spawner would write them. */
   const GpgpVertexLayout* vertices;

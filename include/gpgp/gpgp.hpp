@@ -1,8 +1,8 @@
 /* gpgp.hpp: the whole C++17 wrapper. Include the header of one service where that is all you use.
  *
  * The wrapper is header-only. Functions of spawn_builder.h and lottie.hpp, compileGrammar, compileSvg and compileGlyphs
- * are in libgpgp_compiler, those of text.hpp in libgpgp_text, those of evaluator.hpp in libgpgp_evaluator; only programs
- * that call them link these libraries.
+ * are in libgpgp_compiler, those of text.hpp in libgpgp_text, those of evaluator.hpp in libgpgp_evaluator; only
+ * programs that call them link these libraries.
  */
 #ifndef GPGP_HPP
 #define GPGP_HPP

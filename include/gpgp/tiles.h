@@ -10,7 +10,10 @@
  *   gpgpRecordFreeTile                     frees it
  *
  * All recordings of a tile set, and the engine's draws, are submitted to one queue in the order of recording, or the
- * engine synchronises them: a range that was freed is used again at once.
+ * engine synchronises them: a range that was freed is used again at once. They must be submitted. Where a command
+ * buffer is dropped instead, the set counts its tiles as recorded: record those that it spawned or moved again, and
+ * fill the counts of those that it freed with 0 (GpgpTileRange::slot before it was freed), or their draws stay what
+ * they were.
  */
 #ifndef GPGP_TILES_H
 #define GPGP_TILES_H
@@ -19,7 +22,7 @@
 extern "C" {
 #endif
 
-/** A tile of a tile set. 0 is none. A freed tile's handle is recognised. */
+/** A tile of a tile set. 0 is none. A freed tile's handle is recognised, and so is that of another set. */
 typedef uint64_t GpgpTile;
 
 typedef struct GpgpTileSetCreateInfo {

@@ -460,9 +460,9 @@ typedef struct GpgpCanvasCreateInfo {
   /** Items of all kinds in one recording, not drawings alone; at most 65536; 0: 64. Lists (ui.h) count each of their
    *  drawings and clips, and each change of transform, clip or group. A drawing with layers counts each of its layers,
    *  clips of layers, and the paths between them. The number of groups has the same limit, and so
-   *  has the number of different drawings and glyph sets, of which there are at most 2047. Assets share buffers, of
-   *  which a recording binds at most 8: this counts only where its assets together take more than
-   *  VkPhysicalDeviceLimits::maxStorageBufferRange. */
+   *  has the number of different drawings and glyph sets, of which there are at most 2047. Assets share buffers, each
+   * of at most VkPhysicalDeviceLimits::maxStorageBufferRange, of which a recording binds at most 8. A ninth is an
+   * error: it takes assets above 64 KiB each that lie among some 100 MiB of others, or take more than 1 MiB each. */
   uint32_t maxDrawings;
   /** Glyphs of all texts in one recording, blanks not counted, at most 1048576; 0: 1024. 160 bytes each, and 48 more
    *  for every recording that can be in flight. */

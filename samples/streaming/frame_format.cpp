@@ -3,6 +3,9 @@
 #include "assembly.h"
 #include "compression.h"
 
+#include <cmath>
+#include <type_traits>
+
 namespace streaming {
 namespace {
 
@@ -54,10 +57,15 @@ std::optional<ParsedFrame> parseFrame(ByteSpan frame, uint32_t triangleCount) {
   if (Reader(frame.last(4)).get<uint32_t>() != checksum(body)) return {};
   ParsedFrame parsed;
   Reader reader(body);
-  visit(parsed.header, [&](auto& field) { field = reader.get<std::remove_reference_t<decltype(field)>>(); });
+  bool isFinite = true;
+  visit(parsed.header, [&](auto& field) {
+    using Field = std::remove_reference_t<decltype(field)>;
+    field = reader.get<Field>();
+    if constexpr (std::is_floating_point_v<Field>) isFinite = isFinite && std::isfinite(field);
+  });
   const auto rawSize = reader.get<uint32_t>();
   const ByteSpan packed = reader.take(reader.get<uint32_t>());
-  if (!reader.well() || parsed.header.key > 1 || static_cast<uint8_t>(parsed.header.codec) > 1) return {};
+  if (!reader.well() || !isFinite || parsed.header.key > 1 || static_cast<uint8_t>(parsed.header.codec) > 1) return {};
   parsed.texels = reader.take(reader.left());
   const uint32_t bitWords = (triangleCount + 31) / 32;
   if (rawSize > 8 + uint64_t{triangleCount} * 8 + bitWords * 4) return {};

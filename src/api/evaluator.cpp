@@ -129,8 +129,8 @@ Result<void> check(const GpgpEvaluationInfo& info) {
   if (info.maxDepth > 65535) return invalid("maxDepth is at most 65535");
   if (info.maxShapesPerAxiom > 1u << 31) return invalid("maxShapesPerAxiom is at most 2147483648");
   for (int axis = 0; info.region && axis < 3; ++axis)
-    if (std::isnan(info.region->min[axis]) || std::isnan(info.region->max[axis]))
-      return invalid("region is not a number");
+    if (!(info.region->min[axis] <= info.region->max[axis])) // nor are numbers that are none
+      return invalid("region has a min that is not at most its max");
   return {};
 }
 

@@ -9,7 +9,7 @@ using namespace gpgp::api;
 using spawn::TileSet;
 
 namespace {
-constexpr uint32_t kMostTiles = 1u << 20;
+constexpr uint32_t kMostTiles = TileSet::kMostTiles;
 
 struct Parts {
   spawn::Spawner* spawner;

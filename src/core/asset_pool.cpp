@@ -6,16 +6,18 @@
 
 namespace gpgp::core {
 namespace {
-constexpr VkDeviceSize kAlignment = 256, kLeastBlock = VkDeviceSize(1) << 20;
+constexpr VkDeviceSize kAlignment = 256, kLeastBlock = VkDeviceSize(1) << 20, kSmall = VkDeviceSize(64) << 10;
 } // namespace
 
-/// A new block is as large as all before it, so that there are few of them, however many assets there are.
+/// A new block is as large as all before it, so that there are few of them, however many assets there are. Small assets
+/// have blocks of their own: they lie together, whatever large ones come and go beside them.
 Result<AssetPool::Place> AssetPool::allocate(GpgpService service, VkDeviceSize size) {
   size = (size + kAlignment - 1) / kAlignment * kAlignment;
+  const bool small = size <= kSmall;
   const std::lock_guard lock(mutex_);
   VkDeviceSize all = 0;
   for (Block& block : blocks_) {
-    if (block.service != service) continue;
+    if (block.service != service || block.small != small) continue;
     all += block.buffer.size();
     VkDeviceSize start = 0;
     auto at = block.used.begin();
@@ -29,13 +31,14 @@ Result<AssetPool::Place> AssetPool::allocate(GpgpService service, VkDeviceSize s
   used.push_back({0, size});
   const VkDeviceSize most = device_.limits.maxStorageBufferRange / kAlignment * kAlignment;
   Result<Buffer> buffer = Error{};
-  for (const VkDeviceSize bytes : {std::max(size, std::min(std::max(all, kLeastBlock), most)), size}) {
+  for (VkDeviceSize bytes = std::max(size, std::min(std::max(all, kLeastBlock), most));;) {
     buffer = Buffer::create(device_, memory_, service, "assets", bytes,
                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryPlace::device);
-    if (buffer || bytes == size) break; // else there may be memory for the asset alone
+    if (buffer || bytes == size) break; // else there may be memory for a smaller one
+    bytes = std::max(size, bytes / 2 / kAlignment * kAlignment);
   }
   if (!buffer) return buffer.error();
-  blocks_.push_back({std::move(*buffer), service, std::move(used)});
+  blocks_.push_back({std::move(*buffer), service, small, std::move(used)});
   const Buffer& made = blocks_.back().buffer;
   return Place{made.handle(), made.size(), 0, size};
 }

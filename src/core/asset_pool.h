@@ -26,6 +26,7 @@ private:
   struct Block {
     Buffer buffer;
     GpgpService service;
+    bool small;                   ///< holds small assets, the others hold large ones
     std::pmr::vector<Range> used; // by offset
   };
 

@@ -49,7 +49,8 @@ public:
   bool isNew(std::initializer_list<const char*> texts) const;
 
   // ---- objects
-  std::mutex objects; ///< held briefly, but by gpgpRecordUpload while it copies
+  std::atomic<uint32_t> tileSets{0}; ///< made so far
+  std::mutex objects;                ///< held briefly, but by gpgpRecordUpload while it copies
   /// Gives an object a handle. On failure the object is destroyed and bad_alloc thrown. Any thread.
   Slot* adopt(Unique<Object> object);
   /// Invalidates the handle at once and frees the object when the frames that may use it are safe. (context)

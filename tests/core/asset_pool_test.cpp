@@ -57,6 +57,21 @@ TEST(AssetPool, PartsDoNotOverlapAndBuffersAreFew) {
   EXPECT_LE(bytes() - before, 3 * most + (VkDeviceSize(1) << 20));
   for (const auto& [buffer, place] : places) context.assetPool().free(place);
   EXPECT_EQ(bytes(), before);
+  // Small ones lie together, whatever large ones come and go beside them.
+  std::set<VkBuffer> smalls;
+  std::vector<core::AssetPool::Place> few, many;
+  for (int i = 0; i < 64; ++i) {
+    const auto small = context.assetPool().allocate(GPGP_SERVICE_VECTOR, 512);
+    const auto large = context.assetPool().allocate(GPGP_SERVICE_VECTOR, VkDeviceSize(1) << 20);
+    ASSERT_TRUE(small && large);
+    smalls.insert(small->buffer);
+    few.push_back(*small);
+    many.push_back(*large);
+  }
+  EXPECT_EQ(smalls.size(), 1u);
+  for (const auto& place : many) context.assetPool().free(place);
+  EXPECT_EQ(bytes() - before, VkDeviceSize(1) << 20);
+  for (const auto& place : few) context.assetPool().free(place);
   // What no block of theirs holds.
   const VkDeviceSize huge = VkDeviceSize(3) << 20;
   const auto large = context.assetPool().allocate(GPGP_SERVICE_VECTOR, huge);

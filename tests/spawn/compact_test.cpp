@@ -263,6 +263,23 @@ TEST(CompactRotationTest, AnyRotationTurnsPointsByTheBound) { // against quatern
   EXPECT_GT(worst, 1e-5);
 }
 
+TEST(CompactRotationTest, FlatBoxesHaveNormals) {
+  GpgpCompactInstance flat{};
+  for (int axis = 0; axis < 3; ++axis) flat.scale[axis] = 0x4400; // 4 m
+  flat.scale[1] = 0;
+  const shader::uvec3 bits = shader::packRotation({0, 0, 0, 1});
+  flat.rotation[0] = uint16_t(bits.x), flat.rotation[1] = uint16_t(bits.y), flat.rotation[2] = uint16_t(bits.z);
+  const shader::GpgpCompact box = unpacked(flat);
+  for (int axis = 0; axis < 3; ++axis) {
+    shader::vec3 normal(0);
+    normal[axis] = -1;
+    const shader::vec3 n = shader::gpgpCompactNormal(box, normal);
+    const float length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+    ASSERT_TRUE(std::isfinite(length) && length > 0) << axis;
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(n[k] / length, normal[k], 2e-4f) << axis;
+  }
+}
+
 TEST(CompactRotationTest, HalfFloatsAreTheNearest) {
   for (uint32_t h = 0x400; h < 0x7bff; ++h) { // every one there is, what lies between it and the next, and their middle
     const float value = shader::gpgpHalf(h), next = shader::gpgpHalf(h + 1);

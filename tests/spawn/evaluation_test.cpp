@@ -379,9 +379,13 @@ TEST(EvaluationTest, KeysAndRegionsChooseAmongTheWhole) {
     EXPECT_EQ(std::memcmp(found.data(), expected.data(), found.size() * sizeof found[0]), 0) << name;
     EXPECT_EQ(result.terminals, all.size()); // counted all the same
     EXPECT_EQ(result.instances, found.size());
+    info.keyCount = 0; // none of them
+    result = derive(part, axioms, 5, info);
+    EXPECT_EQ(result.instances, 0u);
+    EXPECT_EQ(result.terminals, all.size());
     // A region: boxes of corners, worked out in doubles. Terminals within rounding of its faces may go either way.
     const GpgpSpawnBounds region{{3, 1, -4}, {20, 9, 30}};
-    info.keyCount = 0;
+    info.keys = nullptr;
     info.region = &region;
     found = allOf(derive(part, axioms, 3, info));
     size_t inside = 0, at = 0;
@@ -605,6 +609,10 @@ TEST(EvaluationTest, MistakesAreNamed) {
   what.keyCount = 1;
   EXPECT_EQ(gpgpEvaluate(evaluation, &what), GPGP_ERROR_INVALID_ARGUMENT);
   what.keyCount = 0;
+  const GpgpSpawnBounds backward{{0, 1, 0}, {1, 0, 1}};
+  what.region = &backward;
+  EXPECT_EQ(gpgpEvaluate(evaluation, &what), GPGP_ERROR_INVALID_ARGUMENT);
+  what.region = nullptr;
   what.flags = 64;
   EXPECT_EQ(gpgpEvaluate(evaluation, &what), GPGP_ERROR_INVALID_ARGUMENT);
   what.flags = 0;

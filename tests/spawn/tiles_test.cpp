@@ -552,7 +552,8 @@ TEST_F(TilesTest, VerticesOfTilesAreDrawnFromTheSharedBuffers) {
 
 TEST_F(TilesTest, HandlesAreChecked) {
   const GpgpRecorder spawner = makeSpawner();
-  World world = makeWorld(kTown, 96 * 1000, 2, spawner), other = makeWorld(kOneBucket, 96 * 1000, 2, spawner);
+  World world = makeWorld(kTown, 96 * 1000, 2, spawner), other = makeWorld(kOneBucket, 96 * 1000, 2, spawner),
+        alike = makeWorld(kTown, 96 * 1000, 2, spawner);
   const auto lots = lotsOf(0, 2);
   auto info = init<GpgpTileInfo>();
   info.hostAxioms = lots.data();
@@ -576,6 +577,11 @@ TEST_F(TilesTest, HandlesAreChecked) {
     EXPECT_EQ(world.set.range(second)->slot, 0u);
     EXPECT_EQ(world.set.recordFree(cmd, frame, tile), GPGP_ERROR_INVALID_HANDLE);
     EXPECT_EQ(other.set.recordFree(cmd, frame, second), GPGP_ERROR_INVALID_HANDLE); // of another set
+    GpgpTile first = 0; // and of one whose tiles have the same slots
+    ASSERT_EQ(alike.set.record(cmd, frame, info, first), GPGP_SUCCESS);
+    EXPECT_EQ(world.set.recordFree(cmd, frame, first), GPGP_ERROR_INVALID_HANDLE);
+    EXPECT_EQ(alike.set.recordFree(cmd, frame, second), GPGP_ERROR_INVALID_HANDLE);
+    ASSERT_EQ(alike.set.recordFree(cmd, frame, first), GPGP_SUCCESS);
     EXPECT_EQ(world.set.trim(second, 100000), GPGP_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(world.set.recordFree(cmd, frame, second, 8), GPGP_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(world.set.recordFree(nullptr, frame, second), GPGP_ERROR_INVALID_ARGUMENT);
@@ -624,6 +630,7 @@ TEST_F(TilesTest, HandlesAreChecked) {
   refuses([](GpgpTileSetCreateInfo& c) { c.vertices = c.instances; });
   messages.clear();
   destroy(world);
+  destroy(alike);
   destroy(other);
 }
 

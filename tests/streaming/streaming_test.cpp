@@ -194,6 +194,18 @@ TEST(Frames, ComeBackAsTheyWere) {
   }
 }
 
+TEST(Frames, RefuseTimesThatAreNone) {
+  for (const double seconds : {std::nan(""), HUGE_VAL}) {
+    FrameHeader header;
+    header.key = 1;
+    header.seconds = seconds;
+    const FrameBlocks blocks{{}, {}, std::vector<uint32_t>((kTriangles + 31) / 32)};
+    EXPECT_FALSE(parseFrame(writeFrame(header, blocks, {}), kTriangles));
+    header.seconds = 1;
+    EXPECT_TRUE(parseFrame(writeFrame(header, blocks, {}), kTriangles));
+  }
+}
+
 TEST(Frames, KeepTheColourOfWhatGoes) {
   Sequence server(Codec::zstd);
   StreamState client(welcomeOf(Codec::zstd));

@@ -104,20 +104,18 @@ TEST_F(CanvasTest, AListShowsAnyNumberOfGlyphSets) {
   // One more than the canvas was made for.
   const GpgpGlyphSetCreateInfo info = GPGP_GLYPH_SET_CREATE_INFO_INIT;
   ASSERT_EQ(gpgpCreateGlyphSet(context, &info, &sets.emplace_back()), GPGP_SUCCESS);
-  list.add(sets.back(), {{GPGP_GLYPH_NONE, 0, 0, 2, {1, 1, 1, 1}}});
-  const GpgpCanvasItem item = list.item();
-  const host::Image target(device, {.format = VK_FORMAT_R16G16B16A16_SFLOAT, .width = 128, .height = 128});
-  GpgpCanvasInfo recording = GPGP_CANVAS_INFO_INIT;
-  recording.width = recording.height = 128;
-  recording.items = &item;
-  recording.itemCount = 1;
-  recording.target = target.target({}, {});
-  const GpgpFrame frame = advance();
-  device.submitAndWait([&](VkCommandBuffer commands) {
-    EXPECT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
-    EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &recording), GPGP_ERROR_UNSUPPORTED);
-  });
-  EXPECT_NE(lastMessage().find("at most 64 different drawings"), std::string::npos) << lastMessage();
+  const VkBool32 foreground = VK_TRUE;
+  const GpgpGlyph glyph{1, &path, 1, &foreground};
+  uint32_t index = 0;
+  ASSERT_EQ(gpgpAddGlyphs(sets.back(), &glyph, 1, &index), GPGP_SUCCESS) << lastMessage();
+  list.add(sets.back(), {{index, 0, 64, 2, {1, 1, 1, 1}}});
+  GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+  const auto without = raster({list.item()}, 128, 128, 16, &report);
+  EXPECT_EQ(report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_EQ(report.pathsDropped, 1u);
+  EXPECT_EQ(report.items, kSets + 1);
+  EXPECT_EQ(report.itemsGiven, kSets);
+  for (size_t i = 0; i < pixels.size(); ++i) ASSERT_EQ(without[i].a, pixels[i].a) << i;
   for (const GpgpAsset set : sets) gpgpDestroyAsset(set);
 }
 

@@ -61,9 +61,12 @@ GPGP_FN vec3 gpgpRotate(vec4 q, vec3 v) {
 GPGP_FN vec3 gpgpCompactPoint(GpgpCompact i, vec3 p) {
   return i.position + gpgpRotate(i.rotation, vec3(p.x * i.scale.x, p.y * i.scale.y, p.z * i.scale.z));
 }
-// A normal of the unit shape in the world, not of unit length.
+// A normal of the unit shape in the world, not of unit length. Extents of 0 count as very small ones.
 GPGP_FN vec3 gpgpCompactNormal(GpgpCompact i, vec3 n) {
-  return gpgpRotate(i.rotation, vec3(n.x / i.scale.x, n.y / i.scale.y, n.z / i.scale.z));
+  const float least = 1e-8f; // half floats go down to 6e-8
+  const vec3 s = vec3(abs(i.scale.x) < least ? least : i.scale.x, abs(i.scale.y) < least ? least : i.scale.y,
+                      abs(i.scale.z) < least ? least : i.scale.z);
+  return gpgpRotate(i.rotation, vec3(n.x / s.x, n.y / s.y, n.z / s.z));
 }
 
 #ifdef GPGP_COMPACT_LOAD

@@ -226,10 +226,13 @@ GPGP_FN bool collidesWithAny(GPGP_COLLIDER_SET ColliderBox box, uint tag, uint l
     const CellRange range = cellsNear(centre, extents, level);
     const uint count = all ? 1u : cellCount(range);
     for (uint c = 0u; c < count; ++c) {
-      const int n = int(c);
-      const ivec3 place =
-          ivec3(n % range.count.x, n / range.count.x % range.count.y, n / (range.count.x * range.count.y));
-      uint i = all ? 0u : firstInCell(GPGP_C cellHash(range.low + place, level));
+      uint i = 0u;
+      if (!all) { // else there are more cells than an int counts, perhaps
+        const int n = int(c);
+        const ivec3 place =
+            ivec3(n % range.count.x, n / range.count.x % range.count.y, n / (range.count.x * range.count.y));
+        i = firstInCell(GPGP_C cellHash(range.low + place, level));
+      }
       spent += 1u;
       while (i < linked) {
         spent += 1u;

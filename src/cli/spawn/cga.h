@@ -25,13 +25,9 @@ struct CgaOptions {
   std::string schedule = "default";                                     ///< on the GPU: default or interpreter
 };
 
-bool isCga(const std::string& file);
 /// On the GPU where the program has an operator graph that derives all of the axioms, else on the CPU. --device cpu
 /// takes the CPU, another one the GPU or nothing. Throws Usage and Failure.
 Outcome spawnCga(const CgaOptions& options, const CommonOptions& common);
-/// The operator graph of a .cga file as PGA-shape, from its start rule. attributes: NAME=VALUE. Throws Usage, and
-/// Failure where it has none.
-std::string cgaGraph(const std::string& file, const std::string& text, const std::vector<std::string>& attributes);
 
 // --- cga_gpu.cpp ---
 /// What the GPU did.

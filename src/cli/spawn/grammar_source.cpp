@@ -2,7 +2,7 @@
 
 #include "cli/shared/command.h"
 #include "cli/shared/messages.h"
-#include "cli/spawn/cga.h"
+#include "cli/spawn/cga_source.h"
 #include "spawn/language/build_graph.h"
 
 #include <cctype>

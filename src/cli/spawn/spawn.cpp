@@ -3,6 +3,7 @@
 #include "cli/shared/painter.h"
 #include "cli/spawn/axioms.h"
 #include "cli/spawn/cga.h"
+#include "cli/spawn/cga_source.h"
 #include "cli/spawn/grammar_source.h"
 #include "cli/spawn/lsystem.h"
 #include "cli/spawn/reference.h"
@@ -273,9 +274,10 @@ Outcome spawnFile(const SpawnOptions& options, const CommonOptions& common) {
   if (!options.set.empty()) throw Usage("attributes of .cga files are set by --attr NAME=VALUE, not by --set");
   if (options.output != "instances" || options.sorted || options.nodes || options.instanced || options.maxInstances ||
       options.maxColliders || options.slice || (options.schedule != "default" && options.schedule != "interpreter"))
-    throw Usage("--output, --sorted, --out-nodes, --instanced, --slice, --max-instances, --max-colliders and schedules "
-                "other than default and interpreter are not for .cga files; `gpgp bake` makes grammars of them that take "
-                "these");
+    throw Usage(
+        "--output, --sorted, --out-nodes, --instanced, --slice, --max-instances, --max-colliders and schedules "
+        "other than default and interpreter are not for .cga files; `gpgp bake` makes grammars of them that take "
+        "these");
   CgaOptions cga;
   cga.file = options.grammars[0];
   cga.start = options.start;

@@ -14,13 +14,13 @@ constexpr uint64_t kShapesBetweenQuestions = 65536;
 class TerminalFilter final : public Filter {
 public:
   TerminalFilter(const GpgpEvaluationInfo& info, std::pmr::memory_resource* memory)
-      : keys_(memory), region_(info.region) {
+      : byKey_(info.keys != nullptr), keys_(memory), region_(info.region) {
     keys_.reserve(info.keyCount);
     for (uint32_t i = 0; i < info.keyCount; ++i) keys_.emplace_back(info.keys[i][0], info.keys[i][1]);
     std::sort(keys_.begin(), keys_.end());
   }
   bool keeps(const GpgpInstance& instance) const override {
-    if (!keys_.empty() && !std::binary_search(keys_.begin(), keys_.end(), std::pair(instance.key[0], instance.key[1])))
+    if (byKey_ && !std::binary_search(keys_.begin(), keys_.end(), std::pair(instance.key[0], instance.key[1])))
       return false;
     if (!region_) return true;
     const GpgpSpawnBounds box = boundsOf(instance);
@@ -30,6 +30,7 @@ public:
   }
 
 private:
+  const bool byKey_;
   std::pmr::vector<std::pair<uint32_t, uint32_t>> keys_;
   const GpgpSpawnBounds* const region_;
 };
@@ -257,7 +258,7 @@ core::Result<void> Evaluation::run(const GpgpEvaluationInfo& info, const VertexL
             info,
             {.maxDepth = info.maxDepth ? info.maxDepth : 64,
              .keeps = !(info.flags & GPGP_EVALUATION_COUNT_ONLY),
-             .filter = info.keyCount || info.region ? &filter : nullptr,
+             .filter = info.keys || info.region ? &filter : nullptr,
              .vertices = layout},
             info.maxShapesPerAxiom ? info.maxShapesPerAxiom : 1u << 27,
             axioms_.data(),

@@ -5,6 +5,7 @@
 namespace gpgp::spawn {
 namespace {
 constexpr uint32_t kMostUnit = 256; // a power of two: what aligns quads of 4-byte vertices with 16-bit indices to 1024
+constexpr uint32_t kGenerations = (1u << 28) - 1;
 constexpr VkDeviceSize kCommandBytes = sizeof(VkDrawIndexedIndirectCommand);
 
 VkDeviceSize alignmentOf(const core::Device& device) {
@@ -100,6 +101,8 @@ core::Result<core::Unique<TileSet>> TileSet::create(core::Context& context, cons
       info.indexType != VK_INDEX_TYPE_UINT32)
     return invalid("indexType is neither UINT16 nor UINT32");
   for (const GpgpBuffer* buffer : {&info.instances, &info.vertices, &info.indices, &info.draws})
+    if (buffer->size > UINT64_MAX - buffer->offset) return invalid("offset and size of a buffer exceed 64 bits");
+  for (const GpgpBuffer* buffer : {&info.instances, &info.vertices, &info.indices, &info.draws})
     if (buffer->buffer && buffer->offset % alignment)
       return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
                              "an offset is %llu; it must be a multiple of minStorageBufferOffsetAlignment, %llu",
@@ -128,18 +131,17 @@ core::Result<core::Unique<TileSet>> TileSet::create(core::Context& context, cons
 TileSet::TileSet(core::Context& owner, const GpgpTileSetCreateInfo& info, uint32_t unit, uint32_t units,
                  VkDeviceSize stride, uint32_t drawsEach, VkDeviceSize bytesEach, bool isVertices)
     : Object(owner, core::Kind::tileSet, info.label), spawner(info.spawner), grammar(info.grammar),
-      instances_(info.instances), vertices_(info.vertices), indices_(info.indices), draws_(info.draws),
-      indexType_(info.indexType), unit_(unit), stride_(stride), drawsEach_(drawsEach), bytesEach_(bytesEach),
-      isVertices_(isVertices), units_(units), tiles_(info.maxTiles, &owner.host()), freeSlots_(&owner.host()),
-      free_(units, info.maxTiles, &owner.host()) {
+      number_(owner.tileSets.fetch_add(1) & 0xffffu), instances_(info.instances), vertices_(info.vertices),
+      indices_(info.indices), draws_(info.draws), indexType_(info.indexType), unit_(unit), stride_(stride),
+      drawsEach_(drawsEach), bytesEach_(bytesEach), isVertices_(isVertices), units_(units),
+      tiles_(info.maxTiles, &owner.host()), freeSlots_(&owner.host()), free_(units, info.maxTiles, &owner.host()) {
   freeSlots_.reserve(info.maxTiles);
   for (uint32_t slot = info.maxTiles; slot-- > 0;) freeSlots_.push_back(slot);
 }
 
 TileSet::Tile* TileSet::find(GpgpTile tile) {
-  const auto slot = static_cast<uint32_t>(tile), generation = static_cast<uint32_t>(tile >> 32);
-  if (slot >= tiles_.size() || !(generation & 1) || tiles_[slot].generation != generation) return nullptr;
-  return &tiles_[slot];
+  const uint32_t slot = slotOf(tile);
+  return slot < tiles_.size() && (tiles_[slot].generation & 1) && handleOf(slot) == tile ? &tiles_[slot] : nullptr;
 }
 
 GpgpBuffer TileSet::part(const GpgpBuffer& buffer, VkDeviceSize offset, VkDeviceSize size) {
@@ -174,7 +176,7 @@ core::Result<void> TileSet::record(VkCommandBuffer commandBuffer, const GpgpTile
       return full("no free range is large enough");
     }
   }
-  const uint32_t slot = old ? static_cast<uint32_t>(tile) : freeSlots_.back();
+  const uint32_t slot = old ? slotOf(tile) : freeSlots_.back();
   const uint32_t first = range.first * unit_, room = range.size * unit_;
   GpgpSpawnInfo spawn = GPGP_SPAWN_INFO_INIT;
   GpgpVertexOutput output{};
@@ -212,14 +214,14 @@ core::Result<void> TileSet::record(VkCommandBuffer commandBuffer, const GpgpTile
   made.range = range;
   if (!old) {
     freeSlots_.pop_back();
-    ++made.generation;
-    tile = GpgpTile(made.generation) << 32 | slot;
+    made.generation = (made.generation + 1) & kGenerations;
+    tile = handleOf(slot);
   }
   return {};
 }
 
 void TileSet::recordFree(VkCommandBuffer commandBuffer, GpgpTile tile, GpgpAccessMode mode) {
-  const auto slot = static_cast<uint32_t>(tile);
+  const uint32_t slot = slotOf(tile);
   const bool external = mode & GPGP_ACCESS_EXTERNAL_BARRIERS;
   core::recordFillBarrier(context.device, commandBuffer, external ? GpgpAccess{} : draws_.before, true);
   fill(commandBuffer, slot, isVertices_ ? 0 : 1, 0);
@@ -227,7 +229,7 @@ void TileSet::recordFree(VkCommandBuffer commandBuffer, GpgpTile tile, GpgpAcces
   Tile& gone = tiles_[slot];
   free_.give(gone.range);
   gone.range = {};
-  ++gone.generation;
+  gone.generation = (gone.generation + 1) & kGenerations;
   freeSlots_.push_back(slot);
 }
 
@@ -244,7 +246,7 @@ core::Result<void> TileSet::trim(GpgpTile tile, uint32_t used) {
 
 GpgpTileRange TileSet::rangeOf(GpgpTile tile) {
   const FreeRanges::Range range = find(tile)->range;
-  return {range.first * unit_, range.size * unit_, static_cast<uint32_t>(tile)};
+  return {range.first * unit_, range.size * unit_, slotOf(tile)};
 }
 
 GpgpTileSetReport TileSet::report() const {
@@ -257,7 +259,7 @@ GpgpTileSetReport TileSet::report() const {
     ++report.tiles;
     if (tile.range.first + tile.range.size <= end) continue;
     end = tile.range.first + tile.range.size;
-    report.highest = GpgpTile(tile.generation) << 32 | slot;
+    report.highest = handleOf(slot);
   }
   for (const FreeRanges::Range& range : free_.ranges()) report.holes += range.first < end;
   report.capacity = units_ * unit_;

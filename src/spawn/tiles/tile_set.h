@@ -48,6 +48,8 @@ public:
   };
   /// Null: there is no such tile.
   Tile* find(GpgpTile tile);
+  static uint32_t slotOf(GpgpTile tile) { return static_cast<uint32_t>(tile) & (kMostTiles - 1); }
+  static constexpr uint32_t kMostTiles = 1u << 20;
 
   core::Result<void> record(VkCommandBuffer commandBuffer, const GpgpTileInfo& info, Spawner& spawner,
                             const Grammar& grammar, GpgpTile& tile);
@@ -66,6 +68,10 @@ private:
   void fill(VkCommandBuffer commandBuffer, uint32_t slot, uint32_t word, uint32_t value) const;
   static GpgpBuffer part(const GpgpBuffer& buffer, VkDeviceSize offset, VkDeviceSize size);
 
+  /// A handle: the generation of the slot in 28 bits, the number of the set in 16, the slot in 20.
+  GpgpTile handleOf(uint32_t slot) const { return (GpgpTile(tiles_[slot].generation) << 16 | number_) << 20 | slot; }
+
+  const uint32_t number_; // of the context's sets, modulo 2^16
   const GpgpBuffer instances_, vertices_, indices_, draws_;
   const VkIndexType indexType_;
   const uint32_t unit_;          // instances or quads

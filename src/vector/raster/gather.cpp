@@ -47,16 +47,14 @@ Result<uint32_t> Gather::bind(const core::Resident& asset, const shader::SlotRec
   for (; tables_.assetCells[cell]; cell = (cell + 1) & mask)
     if (const size_t index = tables_.assetCells[cell] - 1u; tables_.assets[index] == &asset)
       return tables_.assetSlots[index];
-  if (assetCount == tables_.assets.size())
-    return wrong(GPGP_ERROR_UNSUPPORTED, ": this canvas draws at most %u different drawings and glyph sets at a time",
-                 assetCount);
+  ++assetsNeeded_;
+  if (assetCount == tables_.assets.size()) return kNone;
   uint32_t binding = 0;
   while (binding < bufferCount_ && buffers_[binding].buffer != asset.buffer()) ++binding;
   if (binding == shader::kMaxBuffers)
     return wrong(GPGP_ERROR_UNSUPPORTED,
-                 ": the drawings and glyph sets of a recording lie in more than %u buffers, each of at most %u bytes "
-                 "on this device",
-                 shader::kMaxBuffers, context_.device.limits.maxStorageBufferRange);
+                 ": the drawings and glyph sets of a recording lie in more than %u of the buffers that assets share",
+                 shader::kMaxBuffers);
   if (binding == bufferCount_) buffers_[bufferCount_++] = {asset.buffer(), asset.bufferSize()};
   tables_.assets[assetCount] = &asset;
   tables_.slots[assetCount + 1] = tables;
@@ -139,6 +137,7 @@ Result<void> Gather::planDrawing(const DrawingAsset& drawing, const Map& map, fl
   const shader::vec4 nothing(0);
   const auto slot = bind(drawing, drawing.tables()); // where filters find their tables
   if (!slot) return slot.error();
+  if (*slot == kNone) planner_->close(); // the unit of this drawing is the first that finds no room
   if (auto ok = planner_->addLayered(drawing, *slot, map, opacity, own.hidden ? nothing : own.scissor); !ok)
     return wrong(ok.error().code, ": %s", ok.error().text);
   return {};
@@ -237,6 +236,7 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
   }
   const auto slot = bind(drawing, drawing.tables());
   if (!slot) return slot.error();
+  full_ = *slot == kNone;
   addRun(drawing, 0, source, *slot);
   return {};
 }
@@ -409,7 +409,7 @@ void Gather::finish(shader::CanvasHeader& header) {
   header.glyphLimit = budgets_.glyphs;
   header.shapes = std::max({shapesNeeded_, paintsNeeded_, (stopsNeeded_ + 1) / 2});
   header.shapeLimit = budgets_.shapes;
-  header.sources = std::max(sourcesNeeded_, layersNeeded_);
+  header.sources = std::max({sourcesNeeded_, layersNeeded_, assetsNeeded_});
   header.sourceLimit = budgets_.items;
   shader::SlotRecord& own = tables_.slots[0];
   own.paints = shapes * 4;

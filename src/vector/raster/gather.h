@@ -112,6 +112,7 @@ private:
   void addShapes(const List& list, std::span<const List::Shape> from, uint32_t source);
   bool addShape(const shader::ShapeRecord& shape, uint32_t source, const shader::vec4& color);
   uint32_t addSource(const Map& map, float opacity, uint32_t firstImage, const Chain& clip);
+  /// kNone where there is no room for another asset.
   core::Result<uint32_t> bind(const core::Resident& asset, const shader::SlotRecord& tables);
   [[gnu::format(printf, 3, 4)]] core::Error wrong(GpgpResult code, const char* format, ...) const;
 
@@ -131,7 +132,7 @@ private:
     uint32_t paths = 0, segments = 0, placements = 0, smallGlyphs = 0, smallGlyphEntries = 0;
     uint32_t glyphs = 0; ///< those without room, too
   } used_;
-  uint32_t sourcesNeeded_ = 0, layersNeeded_ = 0;
+  uint32_t sourcesNeeded_ = 0, layersNeeded_ = 0, assetsNeeded_ = 0;
   uint32_t shapesNeeded_ = 0, paintsNeeded_ = 0, stopsNeeded_ = 0;
   uint32_t pathsDropped_ = 0, clipsDropped_ = 0;
   const uint32_t smallGlyphRoom_;

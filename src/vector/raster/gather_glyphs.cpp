@@ -131,7 +131,8 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
     const uint32_t first = set.firstRecord();
     const auto slot = bind(set, {first, first, first, first}); // its glyphs count paints and stops from there
     if (!slot) return slot.error();
-    source |= *slot << shader::kSlotBit;
+    full_ = full_ || *slot == kNone;
+    source |= full_ ? 0 : *slot << shader::kSlotBit;
   }
   const SmallGlyph smallGlyphs(map, info_);
   const std::span<const GlyphSet::Glyph> table = set.table();

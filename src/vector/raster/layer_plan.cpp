@@ -55,7 +55,7 @@ bool LayerPlanner::fits() const {
 
 /// From the first one that does not fit, nothing is drawn; without room for the canvas itself, no layers.
 void LayerPlanner::endUnit(bool layered) {
-  if (keptUnits_ == UINT32_MAX && (rootFits_ ? fits() : !layered))
+  if (keptUnits_ == UINT32_MAX && !closed_ && (rootFits_ ? fits() : !layered))
     kept_ = state_;
   else
     keptUnits_ = std::min(keptUnits_, unit_);

@@ -73,6 +73,8 @@ public:
   /// `visible`: left, top, right, bottom in pixels. The error says what is not supported; it has no place.
   core::Result<void> addLayered(const DrawingAsset& drawing, uint32_t slot, const Map& map, float opacity,
                                 const shader::vec4& visible);
+  /// There is no room for what follows.
+  void close() { closed_ = true; }
   /// Call behind the last unit.
   void finish();
 
@@ -135,6 +137,7 @@ private:
   Picture root_, base_; ///< the canvas; where plain things are rasterised
   bool rootFits_ = false;
   bool layered_ = false; ///< there are drawings with layers
+  bool closed_ = false;  ///< nothing more has room
   bool clean_ = true;    ///< nothing has been composited onto the canvas
   bool open_ = true;     ///< base_ takes what is added next
   State state_, kept_;

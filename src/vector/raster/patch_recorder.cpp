@@ -183,11 +183,10 @@ Result<void> PatchRecorder::add(const GpgpPatchDrawInfo& info, uint32_t index, c
   const core::Resident& resident = asset.drawing ? static_cast<const core::Resident&>(*asset.drawing) : *asset.glyphSet;
   const uint32_t slot = slotOf(resident);
   if (slot == shader::kPatchBuffers)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                     "items[%u]: the drawings and glyph sets of a draw lie in more than %u buffers, each of at most %u "
-                     "bytes on this "
-                     "device",
-                     index, shader::kPatchBuffers, context.device.limits.maxStorageBufferRange);
+    return makeError(
+        GPGP_ERROR_INVALID_ARGUMENT,
+        "items[%u]: the drawings and glyph sets of a draw lie in more than %u of the buffers that assets share", index,
+        shader::kPatchBuffers);
   const uint32_t view = views_ * 2;
   std::memcpy(place_ + sizeof(PatchHeader) + size_t(view) * sizeof(PatchView), views, sizeof views);
   ++views_;
