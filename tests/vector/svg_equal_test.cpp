@@ -287,6 +287,7 @@ TEST(SvgEqual, TextIsOutlines) {
        "<text x='10' y='40'>a<tref href='#o'/>b</text><defs><text id='o'>x<tspan>y</tspan>"
        "</text></defs>",
        at(10, 40) + at(20, 40) + at(30, 40) + at(40, 40)},
+      {"what deletes is not seen", "<text x='10' y='40'>a&#x7f;b</text>", at(10, 40) + at(20, 40)},
       {"nothing of no size", "<text x='10' y='40'>a<tspan font-size='0'>b</tspan>c</text>", at(10, 40) + at(20, 40)},
       {"from above", // 4 units to the left of the middle, that of the small letters, is the baseline
        "<text x='40' y='10' writing-mode='tb'>a<tspan dy='5' dx='2'>b</tspan></text>",
@@ -482,7 +483,7 @@ TEST(SvgEqual, ValuesAreCalculated) {
        square},
       {"in a length",
        "<g style='--w:40px'><rect x='10' y='10' width='var(--w)' style='height:var(--w)' fill='#a00'/></g>", square},
-      {"calc", "<rect x='calc(5px * 2)' y='10' width='calc(100% - 60px)' height='calc((1em + 4px) * 2)' fill='#a00'/>",
+      {"calc", "<rect x='calc(5px * 2)' y='10' width='calc(100% - 60px)' height='calc((1em + 8px) * 2)' fill='#a00'/>",
        square},
       {"min, max and clamp",
        "<rect x='min(10px, 90%)' y='max(10px, 1%)' width='clamp(40px, 1em, 90px)' height='40' fill='#a00'/>", square},
