@@ -54,9 +54,10 @@ enum {
   GPGP_FILTER_BLEND = 6,              /**< mode: GpgpBlendMode; `input` lies on `input2` */
   GPGP_FILTER_COMPOSITE = 7,          /**< mode: GpgpFilterOperator; values: k1 to k4; `input` lies on `input2` */
   GPGP_FILTER_MORPHOLOGY = 8,         /**< values: radius along x, y, rounded to pixels; mode: 0 erode, 1 dilate */
-  /** values: order x, y (1 to 32 each), target x, y, divisor (not 0), bias, preserve alpha (0 or 1); table: the kernel,
-   *  order x times order y numbers as SVG lists them; mode: GpgpFilterEdge. Its elements are one unit of filter space
-   *  apart. */
+  /** values: order x, y (1 to 32 each), target x, y, divisor (not 0), bias, preserve alpha (0 or 1), distance of the
+   *  kernel's elements along x, y in units of filter space (0: 1; below 0: mirrored); table: the kernel, order x times
+   * order y numbers as SVG lists them; mode: GpgpFilterEdge. The bias is added to alpha, and times alpha to colours,
+   * also where the input is transparent. */
   GPGP_FILTER_CONVOLVE_MATRIX = 9,
   GPGP_FILTER_DISPLACEMENT_MAP =
       10, /**< values: scale; mode: x channel + 4 y channel (0 R, 1 G, 2 B, 3 A) of `input2` */
@@ -72,7 +73,8 @@ enum {
 };
 
 /** The light: distant: azimuth, elevation (radians); point: x, y, z; spot: x, y, z, points at x, y, z, exponent, cosine
- *  of the cone's half angle (-1: no cone). */
+ *  of the cone's half angle (-1: no cone). Values 14 and 15: how far apart along x and y the heights of the surface are
+ *  compared, in units of filter space (0: 1); the surface scale is in units of that. */
 typedef int32_t GpgpFilterLight;
 enum { GPGP_LIGHT_DISTANT = 0, GPGP_LIGHT_POINT = 1, GPGP_LIGHT_SPOT = 2 };
 

@@ -191,7 +191,7 @@ typedef struct GpgpSvgTextSpan {
   float size;           /**< units per em, above 0 */
   float weight;         /**< 1 to 1000; 400 is regular */
   float letterSpacing;  /**< units after each grapheme */
-  VkBool32 italic, smallCaps;
+  VkBool32 italic, smallCaps, unkerned; /**< unkerned: pairs of glyphs keep their distance */
 } GpgpSvgTextSpan;
 
 /** A line of an SVG's text. Spans cover it without gaps, in order. */

@@ -1,8 +1,11 @@
-// stb_image, for PNG, JPEG and the first picture of a GIF in memory.
+// stb_image, for PNG, JPEG and the first picture of a GIF in memory, and libwebp, where it is there.
 #include "host/picture.h"
 
 #include <cstring>
 #include <memory>
+#ifdef GPGP_HOST_WEBP
+#include <webp/decode.h>
+#endif
 
 #if defined __GNUC__
 #pragma GCC diagnostic push
@@ -40,10 +43,26 @@ bool isUnmarkedCmyk(std::span<const uint8_t> bytes) {
   return false;
 }
 
+constexpr int kLargest = 16384;
+
+#ifdef GPGP_HOST_WEBP
+Picture decodeWebp(std::span<const uint8_t> bytes) {
+  int width = 0, height = 0;
+  if (!WebPGetInfo(bytes.data(), bytes.size(), &width, &height) || width > kLargest || height > kLargest) return {};
+  Picture picture{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
+  picture.rgba.resize(size_t(picture.width) * picture.height * 4);
+  if (!WebPDecodeRGBAInto(bytes.data(), bytes.size(), picture.rgba.data(), picture.rgba.size(), width * 4)) return {};
+  return picture;
+}
+#endif
+
 } // namespace
 
 Picture decodePicture(std::span<const uint8_t> bytes) {
-  constexpr int kLargest = 16384;
+#ifdef GPGP_HOST_WEBP
+  if (bytes.size() >= 12 && std::memcmp(bytes.data(), "RIFF", 4) == 0 && std::memcmp(&bytes[8], "WEBP", 4) == 0)
+    return decodeWebp(bytes);
+#endif
   int width = 0, height = 0, channels = 0;
   const int size = static_cast<int>(bytes.size());
   if (bytes.size() > size_t(1) << 30 || !stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) ||

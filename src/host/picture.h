@@ -16,7 +16,8 @@ struct Picture {
 void writePng(const std::filesystem::path& file, const Picture& picture);
 Picture readPng(const std::filesystem::path& file);
 
-/// From PNG or JPEG in memory; empty where it is neither, or damaged, or larger than 16384 pixels a side.
+/// From PNG, JPEG, GIF or, with libwebp, WebP in memory; empty where it is none, or damaged, or larger than 16384
+/// pixels a side.
 Picture decodePicture(std::span<const uint8_t> bytes);
 
 /// From premultiplied linear floats (4 a pixel), as a canvas gives them, to straight sRGB bytes.

@@ -255,6 +255,29 @@ TEST(CliVector, APageTooLargeIsShrunkAndThatIsSaid) {
   EXPECT_NE(gpgp({"vector", file.path(), "--size", "8x8"}).out.find("8 x 8 pixels, "), std::string::npos);
 }
 
+TEST(CliVector, OneSideIsGivenAndThePageSaysTheOther) {
+  const auto sizes = [](const std::string& path, const std::vector<std::string>& options) {
+    std::vector<std::string> words{"vector", path};
+    words.insert(words.end(), options.begin(), options.end());
+    const json drawn = gpgpJson(words);
+    return std::array<int, 2>{drawn["width"].get<int>(), drawn["height"].get<int>()};
+  };
+  using Sides = std::array<int, 2>;
+  const std::string inside = " xmlns='http://www.w3.org/2000/svg'><path d='M10 10h40v80h-40z'/></svg>";
+  const TemporaryFile page("page.svg", "<svg width='200' height='100'" + inside), ink("bare.svg", "<svg" + inside);
+  EXPECT_EQ(sizes(page.path(), {"--width", "300"}), (Sides{300, 150}));
+  EXPECT_EQ(sizes(page.path(), {"--height", "25"}), (Sides{50, 25}));
+  EXPECT_EQ(sizes(page.path(), {"--width", "33"}), (Sides{33, 17})) << "what does not fill a pixel has one";
+  EXPECT_EQ(sizes(page.path(), {"--width", "40", "--height", "40"}), (Sides{40, 40}));
+  EXPECT_EQ(sizes(ink.path(), {"--width", "10"}), (Sides{10, 20})) << "the ink is the page";
+  const TemporaryFile one("one.png"), two("two.png"), wide("wide.svg", "<svg width='9000' height='1'" + inside);
+  gpgpJson({"vector", page.path(), one.path(), "--width", "300"});
+  gpgpJson({"vector", page.path(), two.path(), "--size", "300x150"});
+  EXPECT_EQ(host::readPng(one.path()).rgba, host::readPng(two.path()).rgba);
+  EXPECT_NE(gpgpFailure({"vector", wide.path(), "--height", "2"}).find("more than 16384 pixels wide"),
+            std::string::npos);
+}
+
 TEST(CliVector, EmbeddedImagesArePainted) {
   // Two pixels, red and blue, in a place of 20 x 20: fitted into its width, in the middle.
   const std::string png = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAA"
@@ -277,6 +300,13 @@ TEST(CliVector, EmbeddedImagesArePainted) {
   EXPECT_NEAR(pixelOf(seen, 11, 2)[3], 127.5, 0.5); // half of 255, which devices round either way
   EXPECT_GT(pixelOf(seen, 28, 10)[0], pixelOf(seen, 28, 10)[2]) << "the blue half is cut off";
   EXPECT_EQ(pixelOf(seen, 31, 10)[3], 0) << "beside its place";
+  const TemporaryFile webp("webp.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='40' height='20'><image x='10' "
+                                       "width='20' height='20' href='data:image/webp;base64,UklGRh4AAABXRUJQVlA4TBEAAA"
+                                       "AvAQAAAA8Q87//8x8OMqL/AQA='/></svg>");
+  if (gpgpJson({"vector", webp.path(), picture.path()})["unsupported"].empty()) { // else built without libwebp
+    EXPECT_EQ(pixelOf(host::readPng(picture.path()), 11, 10), (Pixel{255, 0, 0, 255}));
+    EXPECT_EQ(pixelOf(host::readPng(picture.path()), 28, 10), (Pixel{0, 0, 255, 255}));
+  }
   const TemporaryFile broken("broken.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='40' height='20'>\n"
                                            "<image width='9' height='9' href='data:image/png;base64,AAAA'/></svg>");
   const ProcessResult result = gpgp({"vector", broken.path(), "--json"});
@@ -432,6 +462,9 @@ TEST(CliVector, WrongUsage) {
                     {"vector", file.path(), "--background", "rgb(1, 2)"},
                     {"vector", file.path(), "--repeat", "0"},
                     {"vector", file.path(), "--size", "0x40"},
+                    {"vector", file.path(), "--width", "0"},
+                    {"vector", file.path(), "--height", "16385"},
+                    {"vector", file.path(), "--size", "9x9", "--width", "9"},
                     {"vector", file.path(), "--size", "big"}});
 }
 

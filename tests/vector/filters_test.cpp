@@ -69,8 +69,11 @@ TEST_F(FiltersTest, MorphologyTakesExtremes) {
 TEST_F(FiltersTest, ConvolutionsFollowTheSpecification) {
   const std::vector<float> kernel = {1, 2, 0, -1, 0.5f, 3, 0, 1, -2, 4, 1, 0};
   for (const int edges : {GPGP_EDGE_NONE, GPGP_EDGE_DUPLICATE, GPGP_EDGE_WRAP})
-    for (const bool keeps : {false, true}) {
+    for (const int variant : {0, 1, 2}) {
+      const bool keeps = variant == 1;
+      const int dx = variant == 2 ? 2 : 1, dy = variant == 2 ? -3 : 1; // the elements' distances
       GpgpFilterStep s = inside(step(GPGP_FILTER_CONVOLVE_MATRIX, {4, 3, 1, 2, 8, 0.05f, keeps ? 1.f : 0.f}, edges));
+      if (variant == 2) s.values[7] = 2, s.values[8] = -3;
       s.table = kernel.data();
       s.tableCount = 12;
       const auto at = [&](int x, int y) {
@@ -85,13 +88,14 @@ TEST_F(FiltersTest, ConvolutionsFollowTheSpecification) {
             Pixel sum{};
             for (int i = 0; i < 3; ++i)
               for (int j = 0; j < 4; ++j) {
-                Pixel p = at(x - 1 + j, y - 2 + i);
+                Pixel p = at(x + dx * (j - 1), y + dy * (i - 2));
                 if (keeps)
                   for (size_t k = 0; k < 3; ++k) p[k] = p[3] > 0 ? p[k] / p[3] : 0;
                 for (size_t k = 0; k < 4; ++k) sum[k] += p[k] * double(kernel[size_t((2 - i) * 4 + 3 - j)]);
               }
-            const double alpha = source(x, y)[3], bias = 0.05f;
-            for (double& v : sum) v = std::clamp(v / 8 + bias * (keeps ? 1 : alpha), 0.0, 1.0);
+            const double bias = 0.05f, alpha = keeps ? source(x, y)[3] : sum[3] / 8 + bias;
+            for (size_t k = 0; k < 3; ++k) sum[k] = std::clamp(sum[k] / 8 + bias * (keeps ? 1 : alpha), 0.0, 1.0);
+            sum[3] = std::clamp(alpha, 0.0, 1.0);
             if (keeps) return Pixel{sum[0] * alpha, sum[1] * alpha, sum[2] * alpha, alpha};
             for (size_t k = 0; k < 3; ++k) sum[k] = std::min(sum[k], sum[3]);
             return sum;
@@ -258,9 +262,11 @@ TEST_F(FiltersTest, LightFollowsTheSpecification) {
   const int last = int(kSize) - 1;
   const auto height = [](int x, int y) { return source(x, y)[3]; };
   /// The specification's table of nine cases.
+  int apart = 1; // heights that are compared
   const auto surface = [&](int x, int y) {
-    const auto i = [&](int dx, int dy) { return height(x + dx, y + dy); };
-    const int l = x > 0 ? -1 : 0, r = x < last ? 1 : 0, t = y > 0 ? -1 : 0, b = y < last ? 1 : 0;
+    const auto i = [&](int dx, int dy) { return height(x + apart * dx, y + apart * dy); };
+    const int l = x >= apart ? -1 : 0, r = x <= last - apart ? 1 : 0, t = y >= apart ? -1 : 0,
+              b = y <= last - apart ? 1 : 0;
     double nx = 0, ny = 0, rows = 0, columns = 0;
     for (int k = -1; k <= 1; ++k) {
       const double weight = k == 0 ? 2 : 1;
@@ -278,12 +284,15 @@ TEST_F(FiltersTest, LightFollowsTheSpecification) {
   const Vector color = {1, 0.8, 0.5};
   for (const bool specular : {false, true})
     for (const int kind : {GPGP_LIGHT_DISTANT, GPGP_LIGHT_POINT, GPGP_LIGHT_SPOT}) {
+      apart = kind == GPGP_LIGHT_POINT ? 2 : 1;
       std::vector<float> values = {float(scale), 1.2f, 1, 0.8f, 0.5f};
       if (specular) values.push_back(6);
       const std::vector<float> light = kind == GPGP_LIGHT_DISTANT ? std::vector<float>{0.7f, 0.9f}
                                                                   : std::vector<float>{20, 14, 30, 40, 40, 0, 3, 0.6f};
       values.insert(values.end(), light.begin(), light.end());
       const auto l = [&](size_t k) { return double(light[k]); };
+      values.resize(16);
+      values[14] = values[15] = apart == 1 ? 0 : static_cast<float>(apart);
       expectPicture(
           {inside(step(specular ? GPGP_FILTER_SPECULAR_LIGHTING : GPGP_FILTER_DIFFUSE_LIGHTING, values, kind))},
           [&](int x, int y) {
@@ -292,7 +301,7 @@ TEST_F(FiltersTest, LightFollowsTheSpecification) {
             if (kind == GPGP_LIGHT_DISTANT) {
               toLight = {std::cos(l(0)) * std::cos(l(1)), std::sin(l(0)) * std::cos(l(1)), std::sin(l(1))};
             } else {
-              toLight = normal({l(0) - (x + 0.5), l(1) - (y + 0.5), l(2) - scale * height(x, y)});
+              toLight = normal({l(0) - (x + 0.5), l(1) - (y + 0.5), l(2) - scale * apart * height(x, y)});
               const double along = -dot(toLight, normal({l(3) - l(0), l(4) - l(1), l(5) - l(2)}));
               if (kind == GPGP_LIGHT_SPOT) brightness = along <= 0 || along < l(7) ? 0 : std::pow(along, l(6));
             }

@@ -490,10 +490,10 @@ TEST(SvgImport, UnitsAndFontSizes) {
       {"<rect height='9' width='1em' style='font:oblique -10deg bold 11px serif'/>", 11},
       {"<g font-size='30'><rect height='9' width='1em' style='font:50% serif'/></g>", 15},
       {"<g font-size='30'><rect height='9' width='1em' style='font:caption'/></g>", 16},
-      {"<g font-size='30'><rect height='9' width='1em' style='font:initial'/></g>", 16},
+      {"<g font-size='30'><rect height='9' width='1em' style='font:initial'/></g>", 12},
       {"<rect height='9' width='1em' style='font:20px serif;font-size:30px'/>", 30},
       {"<rect height='9' width='1em' style='font-size:30px;font:20px serif'/>", 20},
-      {"<rect height='9' width='1em' font='20px serif'/>", 16}, // is no attribute
+      {"<rect height='9' width='1em' font='20px serif'/>", 12}, // is no attribute
       {"<svg font-size='20' width='2em' height='9' overflow='visible'><rect height='9' width='100%'/></svg>", 40},
       {"<rect height='9' width='4' style='transform:SCALEX(2) translateX(0PX) rotate(360DEG)'/>", 8},
   };

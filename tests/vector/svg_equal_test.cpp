@@ -196,7 +196,8 @@ TEST(SvgEqual, PatternsAreCopies) {
             Texts{"W line 2: <rect> fill refers to a pattern without extent; it is not painted"});
 }
 
-/// A font whose letters are half an em wide and a square of four tenths each, which stands on the baseline.
+/// A font whose letters are half an em wide and a square of four tenths each, which stands on the baseline. Two
+/// V are a tenth closer.
 GpgpResult GPGP_CALL shapeSquares(void*, const GpgpSvgText* text, GpgpSvgGlyphFn glyphFn, void* glyphData) {
   static const GpgpPathVerb verbs[] = {GPGP_PATH_MOVE, GPGP_PATH_LINE, GPGP_PATH_LINE, GPGP_PATH_LINE, GPGP_PATH_CLOSE};
   static const float points[] = {0, 0, 0.4f, 0, 0.4f, -0.4f, 0, -0.4f};
@@ -207,6 +208,8 @@ GpgpResult GPGP_CALL shapeSquares(void*, const GpgpSvgText* text, GpgpSvgGlyphFn
   for (uint32_t s = 0; s < text->spanCount; ++s)
     for (uint32_t i = text->spans[s].begin; i < text->spans[s].end; ++i) {
       GpgpSvgGlyph glyph{};
+      const bool isPair = i > 0 && text->text[i] == 'V' && text->text[i - 1] == 'V';
+      if (isPair && !text->spans[s].unkerned) x -= text->spans[s].size / 10;
       glyph.cluster = i;
       glyph.x = x;
       glyph.size = text->spans[s].size;
@@ -287,6 +290,11 @@ TEST(SvgEqual, TextIsOutlines) {
        "<text x='10' y='40'>a<tref href='#o'/>b</text><defs><text id='o'>x<tspan>y</tspan>"
        "</text></defs>",
        at(10, 40) + at(20, 40) + at(30, 40) + at(40, 40)},
+      {"kerned", "<text x='10' y='40'>VV</text>", at(10, 40) + at(18, 40)},
+      {"not kerned", "<text x='10' y='40' style='font-kerning:none'>VV</text>", at(10, 40) + at(20, 40)},
+      {"not kerned as SVG 1.1 says it", "<text x='10' y='40' kerning='0'>VV</text>", at(10, 40) + at(20, 40)},
+      {"no attribute", "<text x='10' y='40' font-kerning='none'>VV</text>", at(10, 40) + at(18, 40)},
+      {"what deletes is not seen", "<text x='10' y='40'>a&#x7f;b</text>", at(10, 40) + at(20, 40)},
       {"nothing of no size", "<text x='10' y='40'>a<tspan font-size='0'>b</tspan>c</text>", at(10, 40) + at(20, 40)},
       {"from above", // 4 units to the left of the middle, that of the small letters, is the baseline
        "<text x='40' y='10' writing-mode='tb'>a<tspan dy='5' dx='2'>b</tspan></text>",
@@ -482,7 +490,7 @@ TEST(SvgEqual, ValuesAreCalculated) {
        square},
       {"in a length",
        "<g style='--w:40px'><rect x='10' y='10' width='var(--w)' style='height:var(--w)' fill='#a00'/></g>", square},
-      {"calc", "<rect x='calc(5px * 2)' y='10' width='calc(100% - 60px)' height='calc((1em + 4px) * 2)' fill='#a00'/>",
+      {"calc", "<rect x='calc(5px * 2)' y='10' width='calc(100% - 60px)' height='calc((1em + 8px) * 2)' fill='#a00'/>",
        square},
       {"min, max and clamp",
        "<rect x='min(10px, 90%)' y='max(10px, 1%)' width='clamp(40px, 1em, 90px)' height='40' fill='#a00'/>", square},

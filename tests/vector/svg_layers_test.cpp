@@ -357,6 +357,24 @@ TEST(SvgLayers, PrimitivesBecomeSteps) {
   for (const auto& c : cases) EXPECT_EQ(steps(c.primitives, kUser), c.steps) << c.primitives;
 }
 
+TEST(SvgLayers, KernelsLightsAndRegionsAreOfPixels) {
+  const std::string filter = "<filter id='f' filterUnits='userSpaceOnUse' x='0.3' y='2.1' width='50' height='20'>"
+                             "<feConvolveMatrix kernelMatrix='0 1 0 1 0 1 0 1 0'/><feDiffuseLighting>"
+                             "<feDistantLight azimuth='180' elevation='90'/></feDiffuseLighting></filter>";
+  const auto at = [&](double scale, const std::string& transform) {
+    const Import i = import("<svg xmlns='http://www.w3.org/2000/svg' width='100' height='100'>" + filter + "<g " +
+                                transform + ">" + kRect + "filter='url(#f)'/></g></svg>",
+                            {}, scale);
+    EXPECT_EQ(i.placed, Texts());
+    return stepsOf(*layersOf(i).at(0).layer);
+  };
+  EXPECT_EQ(at(1, ""), (Texts{"convolve/1 S [0 2 51 23] 3 3 1 1 4", "diffuse 0 [0 2 51 23] 1 1 1 1 1 3.142 1.571"}));
+  EXPECT_EQ(at(4, ""), (Texts{"convolve/1 S [0.25 2 50.5 22.25] 3 3 1 1 4 0 0 0.25 0.25",
+                              "diffuse 0 [0.25 2 50.5 22.25] 1 1 1 1 1 3.142 1.571 0 0 0 0 0 0 0 0.25 0.25"}));
+  // Kernels do not turn over with their element.
+  EXPECT_EQ(at(1, "transform='scale(-.5 2)'")[0], "convolve/1 S [0.3 2.1 50.3 22.1] 3 3 1 1 4 0 0 -2 0.5");
+}
+
 TEST(SvgLayers, TransferFunctionsAreTables) {
   const Import i = page("<filter id='f'><feComponentTransfer><feFuncR type='table' tableValues='0 1 0'/><feFuncG "
                         "type='discrete' tableValues='.25,.75'/><feFuncB type='linear' slope='.5' intercept='.1'/>"

@@ -163,11 +163,11 @@ TEST(SvgPaint, RemIsTheOutermostFontSize) {
     return i.drawing.paths.at(0).points.at(2);
   };
   const std::string rect = "<rect width='2rem' height='9'/>";
-  EXPECT_EQ(width("", rect), 32);
+  EXPECT_EQ(width("", rect), 24);
   EXPECT_EQ(width(" font-size='10'", rect), 20);
   EXPECT_EQ(width(" style='font:10px serif'", rect), 20);
-  EXPECT_EQ(width(" style='font-size:2rem'", rect), 64); // of the initial one, 16
-  EXPECT_EQ(width(" style='font-size:200%'", rect), 64);
+  EXPECT_EQ(width(" style='font-size:2rem'", rect), 48); // of the initial one, 12
+  EXPECT_EQ(width(" style='font-size:200%'", rect), 48);
   EXPECT_EQ(width(" font-size='10'", "<g font-size='99'>" + rect + "</g>"), 20);
   EXPECT_EQ(width(" font-size='10'", "<svg font-size='99' overflow='visible'>" + rect + "</svg>"), 20);
   EXPECT_EQ(width(" font-size='10'", "<g style='font-size:3rem'><rect width='2em' height='9'/></g>"), 60);
@@ -180,7 +180,7 @@ TEST(SvgPaint, RemIsTheOutermostFontSize) {
   expectSame("<svg width='100' height='100' style='font-size:99px' viewBox='0 0 100 100'><linearGradient id='g' "
              "gradientUnits='userSpaceOnUse' x2='5rem'><stop/><stop offset='1' stop-color='red'/></linearGradient>"
              "<rect width='100' height='100' fill='url(#g)'/></svg>",
-             "<linearGradient id='g' gradientUnits='userSpaceOnUse' x2='80'><stop/><stop offset='1' "
+             "<linearGradient id='g' gradientUnits='userSpaceOnUse' x2='60'><stop/><stop offset='1' "
              "stop-color='red'/></linearGradient><rect width='100' height='100' fill='url(#g)'/>");
 }
 

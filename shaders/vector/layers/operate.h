@@ -159,18 +159,21 @@ GPGP_FN vec4 convolveAt(OperationRecord o, int x, int y) {
     for (int i = 0; i < across; ++i) {
       const uint entry = uint((down - 1 - j) * across + across - 1 - i);
       const float weight = tableAt(slot, first + entry / 4u)[int(entry % 4u)];
-      const vec2 p = edgePoint(vec2(middle.x + float(i) - o.values[0].z, middle.y + float(j) - o.values[0].w),
+      const vec2 p = edgePoint(vec2(middle.x + (float(i) - o.values[0].z) * o.values[4].x,
+                                    middle.y + (float(j) - o.values[0].w) * o.values[4].y),
                                o.values[2], o.mode);
       const vec2 q = pixelOf(o, p.x, p.y);
       vec4 color = readBetween(o.a, q.x, q.y);
       if (keepsAlpha) color = vec4(straightOf(color), color.w);
       sum += color * weight;
     }
-  const float alpha = texelAt(o.a, x, y).w;
-  vec4 color = sum / o.values[1].x + vec4(o.values[1].y * (keepsAlpha ? 1.0f : alpha));
-  color = clamp(color, vec4(0.0f), vec4(1.0f));
-  if (keepsAlpha) return vec4(vec3(color) * alpha, alpha);
-  return vec4(min(vec3(color), vec3(color.w)), color.w);
+  const float bias = o.values[1].y;
+  sum = sum / o.values[1].x;
+  const float alpha = keepsAlpha ? texelAt(o.a, x, y).w : sum.w + bias;
+  const vec3 color = clamp(vec3(sum) + vec3(bias * (keepsAlpha ? 1.0f : alpha)), vec3(0.0f), vec3(1.0f));
+  if (keepsAlpha) return vec4(color * alpha, alpha);
+  const float shown = clamp(alpha, 0.0f, 1.0f);
+  return vec4(min(color, vec3(shown)), shown);
 }
 GPGP_FN vec4 neighbourhoodAt(OperationRecord o, int x, int y) {
   if (o.kind == kOperationMorphology) {
@@ -258,22 +261,23 @@ GPGP_FN float heightAt(OperationRecord o, float x, float y) {
 GPGP_FN vec4 lightAt(OperationRecord o, int px, int py) {
   const vec2 p = pointOf(o, float(px) + 0.5f, float(py) + 0.5f);
   const vec4 region = o.values[5];
-  const float left = p.x - 1.0f >= region.x ? 1.0f : 0.0f, right = p.x + 1.0f <= region.z ? 1.0f : 0.0f;
-  const float top = p.y - 1.0f >= region.y ? 1.0f : 0.0f, bottom = p.y + 1.0f <= region.w ? 1.0f : 0.0f;
+  const float dx = o.values[4].x, dy = o.values[4].y;
+  const float left = p.x - dx >= region.x ? 1.0f : 0.0f, right = p.x + dx <= region.z ? 1.0f : 0.0f;
+  const float top = p.y - dy >= region.y ? 1.0f : 0.0f, bottom = p.y + dy <= region.w ? 1.0f : 0.0f;
   float slopeX = 0.0f, slopeY = 0.0f, weightsX = 0.0f, weightsY = 0.0f;
   for (int k = -1; k <= 1; ++k) {
     const float at = float(k), weight = k == 0 ? 2.0f : 1.0f;
     if (k == 0 || (k < 0 ? top : bottom) > 0.0f) {
-      slopeX += weight * (heightAt(o, p.x + right, p.y + at) - heightAt(o, p.x - left, p.y + at));
+      slopeX += weight * (heightAt(o, p.x + right * dx, p.y + at * dy) - heightAt(o, p.x - left * dx, p.y + at * dy));
       weightsX += weight;
     }
     if (k == 0 || (k < 0 ? left : right) > 0.0f) {
-      slopeY += weight * (heightAt(o, p.x + at, p.y + bottom) - heightAt(o, p.x + at, p.y - top));
+      slopeY += weight * (heightAt(o, p.x + at * dx, p.y + bottom * dy) - heightAt(o, p.x + at * dx, p.y - top * dy));
       weightsY += weight;
     }
   }
   const float scale = o.values[0].x;
-  const float height = scale * heightAt(o, p.x, p.y);
+  const float height = scale * sqrt(dx * dy) * heightAt(o, p.x, p.y);
   const vec3 normal = normalize(vec3(-scale * 2.0f * slopeX / (weightsX * max(left + right, 1.0f)),
                                      -scale * 2.0f * slopeY / (weightsY * max(top + bottom, 1.0f)), 1.0f));
   vec3 toLight = vec3(o.values[2]);

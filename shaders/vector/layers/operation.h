@@ -56,7 +56,7 @@ GPGP_CONST uint kOperationBlend = 10u;
 GPGP_CONST uint kOperationOperator = 11u;
 GPGP_CONST uint kOperationMorphology = 12u; // mode: 0 least, 1 most; along y with kAxisY
 // values[0]: order, target; values[1]: divisor, bias, 1: alpha stays; values[2]: a's region; values[3]: slot of the
-// table, its vec4; mode: edges
+// table, its vec4; values[4].xy: the elements' distance; mode: edges
 GPGP_CONST uint kOperationConvolve = 13u;
 GPGP_CONST uint kOperationDisplace = 14u; // values[0].x: scale; mode: channels of b
 GPGP_CONST uint kOperationTile = 15u;     // values[2]: a's region
@@ -64,8 +64,8 @@ GPGP_CONST uint kOperationTile = 15u;     // values[2]: a's region
 // slot of the lattice, its vec4; mode: 0 fractal noise, 1 turbulence
 GPGP_CONST uint kOperationTurbulence = 16u;
 // values[0]: surface scale, constant, exponent, 1: specular; values[1]: colour; values[2]: the light's place or
-// direction and the spot's exponent; values[3]: where it points and the cosine of its cone; values[5]: a's region;
-// mode: which light
+// direction and the spot's exponent; values[3]: where it points and the cosine of its cone; values[4].xy: the heights'
+// distance; values[5]: a's region; mode: which light
 GPGP_CONST uint kOperationLight = 17u;
 
 // Flags.

@@ -187,7 +187,7 @@ Outcome lottie(const VectorOptions& options, const CommonOptions& common, const 
   const GpgpLottieInfo about = *animation->info();
 
   const uint32_t columns = sheet ? options.sheet.width : 1, rows = sheet ? options.sheet.height : 1;
-  Size size = options.size;
+  Size size = sizeAsked(options, static_cast<double>(about.width), static_cast<double>(about.height));
   if (size.width == 0) {
     const double width = static_cast<double>(about.width), height = static_cast<double>(about.height);
     const double shrink = std::min(1.0, kLargest / std::max(width * columns, height * rows));

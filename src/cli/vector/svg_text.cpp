@@ -136,7 +136,8 @@ std::vector<GpgpFont> SvgText::chosen(const GpgpSvgTextSpan& span, std::string_v
 }
 
 void SvgText::shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyphData) {
-  const GpgpFontFeature smallCaps{GPGP_TAG('s', 'm', 'c', 'p'), 1};
+  // Of a span: those in front, behind or both.
+  const GpgpFontFeature features[] = {{GPGP_TAG('s', 'm', 'c', 'p'), 1}, {GPGP_TAG('k', 'e', 'r', 'n'), 0}};
   std::vector<std::vector<GpgpFont>> fonts(text.spanCount);
   std::vector<GpgpTextSpan> spans(text.spanCount);
   for (uint32_t i = 0; i < text.spanCount; ++i) {
@@ -149,7 +150,8 @@ void SvgText::shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyph
     style.size = from.size;
     style.letterSpacing = from.letterSpacing;
     style.language = *from.language ? from.language : nullptr;
-    if (from.smallCaps) style.features = &smallCaps, style.featureCount = 1;
+    style.features = features + (from.smallCaps ? 0 : 1);
+    style.featureCount = uint32_t(from.smallCaps != 0) + uint32_t(from.unkerned != 0);
   }
   GpgpTextInfo info = init<GpgpTextInfo>();
   info.text = text.text;

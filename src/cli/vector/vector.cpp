@@ -29,7 +29,7 @@
 namespace gpgp::cli {
 namespace {
 
-constexpr float kLargest = 4096; ///< pixels of a side, where --size does not say
+constexpr float kLargest = 4096; ///< pixels of a side, where no option says
 
 struct Stages {
   std::string folder, failure;
@@ -76,24 +76,29 @@ PlaneMap mapOf(const VectorOptions& options, const float (&fitted)[6], const Siz
   return map;
 }
 
-/// At what scale the picture shows the source; 0: at its own, or it cannot be read.
-float scaleInto(const Size& size, std::span<const char> bytes, GpgpSvgSource source) {
-  if (size.width == 0) return 0;
+/// The drawing's page: x, y, width, height; none where it has no extent or cannot be read.
+std::optional<std::array<float, 4>> pageOf(std::span<const char> bytes, GpgpSvgSource source) {
   const auto said = gpgp::vector::svg::pageSize(std::as_bytes(bytes), source.fileSystem);
-  if (!said) return 0;
-  float page[4] = {0, 0, static_cast<float>(said->width), static_cast<float>(said->height)};
-  if (!(page[2] > 0 && page[3] > 0)) { // the ink is the page
-    source.messageFn = nullptr;
-    source.stageFn = nullptr;
-    const Result<Blob> blob = compileSvg(source);
-    if (!blob) return 0;
-    const auto drawing = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
-                                                 std::pmr::get_default_resource());
-    if (!drawing || !(drawing->viewport[2] > 0 && drawing->viewport[3] > 0)) return 0;
-    std::copy_n(drawing->viewport, 4, page);
-  }
-  float transform[6];
-  fit(bytes, page, size, transform);
+  if (!said) return std::nullopt;
+  std::array<float, 4> page{0, 0, static_cast<float>(said->width), static_cast<float>(said->height)};
+  if (page[2] > 0 && page[3] > 0) return page;
+  source.messageFn = nullptr; // the ink is the page
+  source.stageFn = nullptr;
+  const Result<Blob> blob = compileSvg(source);
+  if (!blob) return std::nullopt;
+  const auto drawing = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
+                                               std::pmr::get_default_resource());
+  if (!drawing || !(drawing->viewport[2] > 0 && drawing->viewport[3] > 0)) return std::nullopt;
+  std::copy_n(drawing->viewport, 4, page.begin());
+  return page;
+}
+
+/// At what scale a picture shows the page; 0: at its own, or there is none.
+float scaleInto(const Size& size, std::span<const char> bytes, const std::optional<std::array<float, 4>>& page) {
+  if (size.width == 0 || !page) return 0;
+  float transform[6], place[4];
+  std::copy_n(page->begin(), 4, place);
+  fit(bytes, place, size, transform);
   return std::min(std::max(transform[0], transform[3]), 1e6f);
 }
 
@@ -185,7 +190,12 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   }
   const bool inPass = options.method == "in-pass";
   source.methods = inPass ? GPGP_DRAWING_IN_PASS : GPGP_DRAWING_FLATTENED;
-  source.scale = scaleInto(options.size, bytes, source);
+  const bool isSized = options.size.width || options.width || options.height;
+  const std::optional<std::array<float, 4>> page = isSized ? pageOf(bytes, source) : std::nullopt;
+  const Size asked = page ? sizeAsked(options, static_cast<double>((*page)[2]), static_cast<double>((*page)[3]))
+                     : options.width && options.height ? Size{options.width, options.height}
+                                                       : options.size;
+  source.scale = scaleInto(asked, bytes, page);
   if (options.zoom > 1) source.scale = std::min(std::max(source.scale, 1.0f) * static_cast<float>(options.zoom), 1e6f);
   const Result<Blob> blob = compileSvg(source);
   if (!blob) throw Failure(messages.count() ? messages.failure() : name + ": " + blob.name());
@@ -205,7 +215,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   const Drawing drawing = session.take(Drawing::create(session.context(), drawingInfo), "gpgpCreateDrawing");
   const GpgpDrawingInfo facts = session.take(drawing.info(), "gpgpGetDrawingInfo");
   if (!(facts.viewport[2] > 0) || !(facts.viewport[3] > 0)) throw Failure(name + ": the drawing has no extent");
-  Size size = options.size;
+  Size size = asked;
   float shrink = 1;
   if (size.width == 0) {
     shrink = std::min(1.0f, kLargest / std::max(facts.viewport[2], facts.viewport[3]));
@@ -361,7 +371,14 @@ Work addVector(CLI::App& app) {
                    "SVG, gzip-compressed SVG (.svgz), or Lottie animation (.json, .lottie); - is standard input")
       ->required()
       ->check(existingInput());
-  addSize(*command, "--size", options->size, "Picture size in pixels (default: the drawing's own, at most 4096)");
+  CLI::Option* size =
+      addSize(*command, "--size", options->size, "Picture size in pixels (default: the drawing's own, at most 4096)");
+  command->add_option("--width", options->width, "Picture width; its height follows the page unless --height is given")
+      ->check(CLI::Range(1u, kLargestSide))
+      ->excludes(size);
+  command->add_option("--height", options->height, "Picture height; its width follows the page unless --width is given")
+      ->check(CLI::Range(1u, kLargestSide))
+      ->excludes(size);
   command
       ->add_option(
           "--aa", options->antialiasing,
@@ -415,6 +432,7 @@ Work addVector(CLI::App& app) {
 Examples:
   gpgp vector tiger.svg --out tiger.png
   gpgp vector tiger.svgz --size 2048x2048 --background white --out tiger.png
+  gpgp vector icon.svg --width 300 --out icon.png
   cat icon.svg | gpgp vector - icon.png
   gpgp vector map.svg --aa 4 --repeat 100 --json | jq .gpu_ms_median
   gpgp vector spinner.json --frame 12.5 --out spinner.png

@@ -57,6 +57,7 @@ const char* wrongStep(const LayerStep& s) {
     if (!isWhole(v[0], 1, 32) || !isWhole(v[1], 1, 32)) return "the order must be 1 to 32";
     if (!isWhole(v[2], 0, v[0] - 1) || !isWhole(v[3], 0, v[1] - 1)) return "the target lies outside of the kernel";
     if (v[4] == 0) return "the divisor is 0";
+    if (!inRange(v[7], -1e6f, 1e6f) || !inRange(v[8], -1e6f, 1e6f)) return "a distance must be -1e6 to 1e6";
     if (!mode(GPGP_EDGE_WRAP)) return "mode is no GpgpFilterEdge";
     if (s.entryCount != kernel) return "table does not hold as many numbers as the kernel has";
     return nullptr;
@@ -75,6 +76,7 @@ const char* wrongStep(const LayerStep& s) {
   case GPGP_FILTER_SPECULAR_LIGHTING:
     if (!isColor(v + 2)) return "values are not a colour";
     if (s.kind == GPGP_FILTER_SPECULAR_LIGHTING && !inRange(v[5], 0, 1024)) return "the exponent must be 0 to 1024";
+    if (!inRange(v[14], 0, 1e6f) || !inRange(v[15], 0, 1e6f)) return "a distance must be 0 to 1e6";
     if (!mode(GPGP_LIGHT_SPOT)) return "mode is no GpgpFilterLight";
     return nullptr;
   case GPGP_FILTER_GROUP:
@@ -391,7 +393,9 @@ private:
       default: return join(a, b);
       }
     case GPGP_FILTER_MORPHOLOGY: return s.mode ? grow(a, v[0] + 1, v[1] + 1) : a;
-    case GPGP_FILTER_CONVOLVE_MATRIX: return v[5] != 0 ? kAll : grow(a, v[0] + 1, v[1] + 1);
+    case GPGP_FILTER_CONVOLVE_MATRIX:
+      return v[5] > 0 ? kAll
+                      : grow(a, static_cast<float>(kernelReach(v, 0)) + 1, static_cast<float>(kernelReach(v, 1)) + 1);
     case GPGP_FILTER_DISPLACEMENT_MAP: return grow(a, std::abs(v[0]) / 2 + 1, std::abs(v[0]) / 2 + 1);
     case GPGP_FILTER_TILE: return a.empty() ? a : kAll;
     case GPGP_FILTER_GROUP: return mapped(sequence(plan_.sequences[s.sequence - 1]), v);

@@ -59,6 +59,13 @@ struct LayerStep {
   uint32_t firstEntry, entryCount; ///< of the tables
   uint32_t sequence;               ///< 1 + index; 0: none
 };
+/// A distance of kernels and of lights in filter space, where 0 stands for 1.
+inline float distanceOf(float value) { return value == 0 ? 1 : value; }
+/// How far a kernel with a step's values reaches along an axis, in filter space.
+inline double kernelReach(const float* values, int axis) {
+  const float distance = distanceOf(values[7 + axis]);
+  return static_cast<double>(values[axis]) * static_cast<double>(distance < 0 ? -distance : distance);
+}
 
 struct LayerPlan {
   explicit LayerPlan(std::pmr::memory_resource* memory)

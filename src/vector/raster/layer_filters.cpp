@@ -106,9 +106,9 @@ bool LayerPlanner::filter(const Around& a, const LayerNode& node, uint32_t index
     case GPGP_FILTER_MORPHOLOGY: ask(s.input, spread(need, value(0) + 1, value(1) + 1)); break;
     case GPGP_FILTER_CONVOLVE_MATRIX:
       if (s.mode == GPGP_EDGE_NONE)
-        ask(s.input, spread(need, value(0), value(1)));
+        ask(s.input, spread(need, kernelReach(v, 0), kernelReach(v, 1)));
       else if (s.mode == GPGP_EDGE_DUPLICATE && space.b == 0 && space.c == 0)
-        ask(s.input, nearestIn(inputBox(s.input), spread(need, value(0), value(1))));
+        ask(s.input, nearestIn(inputBox(s.input), spread(need, kernelReach(v, 0), kernelReach(v, 1))));
       else
         ask(s.input, {-kFar, -kFar, kFar, kFar});
       break;
@@ -117,7 +117,7 @@ bool LayerPlanner::filter(const Around& a, const LayerNode& node, uint32_t index
       ask(s.input2, need);
       break;
     case GPGP_FILTER_DIFFUSE_LIGHTING:
-    case GPGP_FILTER_SPECULAR_LIGHTING: ask(s.input, spread(need, 2, 2)); break;
+    case GPGP_FILTER_SPECULAR_LIGHTING: ask(s.input, spread(need, 2 * distanceOf(v[14]), 2 * distanceOf(v[15]))); break;
     case GPGP_FILTER_TILE: ask(s.input, {-kFar, -kFar, kFar, kFar}); break;
     case GPGP_FILTER_BLEND:
     case GPGP_FILTER_COMPOSITE:
@@ -298,6 +298,7 @@ LayerPlanner::Picture LayerPlanner::step(const Around& a, const LayerNode& node,
     o.values[1] = {v[4], v[5], v[6], 0};
     o.values[2] = inside;
     o.values[3] = table(a.drawing.tableOf(s.firstEntry));
+    o.values[4] = {distanceOf(v[7]), distanceOf(v[8]), 0, 0};
     break;
   case GPGP_FILTER_DISPLACEMENT_MAP:
     o.kind = shader::kOperationDisplace;
@@ -341,6 +342,7 @@ LayerPlanner::Picture LayerPlanner::step(const Around& a, const LayerNode& node,
       o.values[2] = {std::cos(light[0]) * std::cos(light[1]), std::sin(light[0]) * std::cos(light[1]),
                      std::sin(light[1]), 0};
     o.values[3] = {light[3], light[4], light[5], light[7]};
+    o.values[4] = {distanceOf(v[14]), distanceOf(v[15]), 0, 0};
     o.values[5] = inside;
     break;
   }

@@ -106,13 +106,25 @@ Box Importer::FilterReader::subregion(const Primitive& p, const std::vector<uint
   const double x = along("x", LengthAxis::X, whole.left), y = along("y", LengthAxis::Y, whole.top);
   const double w = along("width", LengthAxis::X, whole.right - whole.left);
   const double h = along("height", LengthAxis::Y, whole.bottom - whole.top);
-  if (cuts_ || space.b != 0 || space.c != 0 || !(space.a > 0 && space.d > 0)) return {x, y, x + w, y + h};
-  // What is tiled ends between pixels, so that tiles meet without seams.
+  return onPixels({x, y, x + w, y + h});
+}
+
+Box Importer::FilterReader::onPixels(const Box& b) const {
+  if (isEmpty(b) || space.b != 0 || space.c != 0 || !(space.a > 0 && space.d > 0)) return b;
   const double sx = space.a * importer.detail_.scale, sy = space.d * importer.detail_.scale;
   const double ox = space.e * importer.detail_.scale, oy = space.f * importer.detail_.scale;
   const auto low = [](double v, double s, double o) { return (std::floor(v * s + o + 1e-4) - o) / s; };
   const auto high = [](double v, double s, double o) { return (std::ceil(v * s + o - 1e-4) - o) / s; };
-  return {low(x, sx, ox), low(y, sy, oy), high(x + w, sx, ox), high(y + h, sy, oy)};
+  return {low(b.left, sx, ox), low(b.top, sy, oy), high(b.right, sx, ox), high(b.bottom, sy, oy)};
+}
+
+void Importer::FilterReader::setDistances(GpgpFilterStep& step, size_t first) const {
+  const double lengths[2] = {std::copysign(std::hypot(space.a, space.b), space.a),
+                             std::copysign(std::hypot(space.c, space.d), space.d)};
+  for (size_t k = 0; k < 2; ++k) {
+    const double distance = std::clamp(1 / (lengths[k] * importer.detail_.scale), -1e6, 1e6);
+    if (std::abs(distance - 1) > 1e-6) step.values[first + k] = static_cast<float>(distance);
+  }
 }
 
 Box Importer::FilterReader::regionOf(const Box& place) const { return cuts_ ? cut(place, region_) : place; }
@@ -131,7 +143,7 @@ bool Importer::FilterReader::readElement(pugi::xml_node filter) {
     unit_ = box();
     if (!(unit_.right >= unit_.left && unit_.bottom >= unit_.top)) unit_ = {0, 0, 0, 0};
   }
-  region_ = *region;
+  region_ = onPixels(*region);
   if (isFirst) {
     store(region_, layer.layer.filterRegion);
   } else {

@@ -48,6 +48,10 @@ struct Importer::FilterReader {
   }
   Box regionOfInput(uint32_t input) const;
   Box subregion(const Primitive& p, const std::vector<uint32_t>& inputs);
+  /// Regions end between pixels of the scale that the drawing is compiled for, as others draw them.
+  Box onPixels(const Box& b) const;
+  /// Makes a step's distances, at `first` and behind it, those of such pixels.
+  void setDistances(GpgpFilterStep& step, size_t first) const;
   /// What is kept of a subregion.
   Box regionOf(const Box& place) const;
   uint32_t sourceAlpha();

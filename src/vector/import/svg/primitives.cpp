@@ -98,6 +98,7 @@ void Importer::FilterReader::colorMatrix(Primitive& p) {
   const int32_t type = choice(p.node, "type", types, 0);
   const pugi::xml_attribute text = p.node.attribute("values");
   std::vector<double> values = numbers(p.node, "values", 20);
+  if ((type == 1 || type == 2) && values.size() > 1) values.resize(1); // librsvg and resvg take the first one
   const size_t wanted = type == 0 ? 20 : type == 3 ? values.size() : 1;
   if (text && values.size() != wanted) {
     if (!values.empty()) importer.ignored(p.node, text);
@@ -218,6 +219,7 @@ void Importer::FilterReader::convolveMatrix(Primitive& p) {
   GpgpFilterStep& step = add(GPGP_FILTER_CONVOLVE_MATRIX, p.region, p.encoding,
                              {order[0], order[1], x, y, divisor, bias, static_cast<double>(keeps)}, p.input);
   step.mode = edge;
+  setDistances(step, 7);
   table(std::vector<float>(kernel.begin(), kernel.end()), step);
 }
 
@@ -273,6 +275,8 @@ void Importer::FilterReader::lighting(Primitive& p) {
       add(specular ? GPGP_FILTER_SPECULAR_LIGHTING : GPGP_FILTER_DIFFUSE_LIGHTING, p.region, p.encoding, {}, p.input);
   step.mode = static_cast<int32_t>(kind - lights);
   for (size_t i = 0; i < values.size(); ++i) step.values[i] = std::clamp(static_cast<float>(values[i]), -3e7f, 3e7f);
+  setDistances(step, 14);
+  for (const size_t k : {14u, 15u}) step.values[k] = std::abs(step.values[k]); // the light is not mirrored
 }
 
 void Importer::FilterReader::displacementMap(Primitive& p) {

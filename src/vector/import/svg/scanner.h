@@ -47,7 +47,7 @@ bool isWord(std::string_view text, std::string_view word);
 
 /// What percentages and font units refer to.
 struct LengthContext {
-  double width = 100, height = 100, fontSize = 16, rootFontSize = 16;
+  double width = 100, height = 100, fontSize = 12, rootFontSize = 12;
   double pageWidth = 100, pageHeight = 100; ///< what vw and vh are parts of
 };
 enum class LengthAxis { X, Y, Diagonal };

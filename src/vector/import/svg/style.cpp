@@ -112,7 +112,7 @@ bool parseFont(std::string_view text, const Style& parent, const LengthContext& 
       "bolder",         "lighter",       "ultra-condensed", "extra-condensed", "condensed",
       "semi-condensed", "semi-expanded", "expanded",        "extra-expanded",  "ultra-expanded"};
   const std::string lower = lowered(text);
-  if (oneOf(lower, systems)) return style = own, size = Style{}.fontSize, true;
+  if (oneOf(lower, systems)) return style = own, size = 16, true;
   std::string_view rest = lower;
   const auto word = [&rest] { return rest.substr(0, rest.find_first_of(" \t\r\n\f/")); };
   double weight = 0;
@@ -339,6 +339,11 @@ bool setSpace(const Context& c) {
   return !c.value.empty();
 }
 constexpr Word<double> kAnchors[] = {{"start", 0}, {"middle", 0.5}, {"end", 1}};
+constexpr Word<bool> kKernings[] = {{"auto", false}, {"normal", false}, {"none", true}};
+bool setKerning(const Context& c) { // of SVG 1.1; other lengths than 0 are not in use
+  double length = 0;
+  return c.style.text.unkerned = parseLength(c.value, c.lengths, LengthAxis::X, length) && length == 0, true;
+}
 constexpr Word<bool> kDirections[] = {{"ltr", false}, {"rtl", true}};
 bool setVertical(const Context& c) {
   const std::string lower = lowered(c.value);
@@ -412,6 +417,8 @@ const Property kProperties[] = {
     GPGP_PROPERTY("font-style", text.italic, setSlant(c)),
     GPGP_PROPERTY("font-variant", text.smallCaps,
                   (c.style.text.smallCaps = lowered(c.value).find("small-caps") != std::string::npos, true)),
+    GPGP_PROPERTY("font-kerning", text.unkerned, choose(c.value, kKernings, c.style.text.unkerned)),
+    GPGP_PROPERTY("kerning", text.unkerned, setKerning(c)),
     GPGP_PROPERTY("letter-spacing", text.letterSpacing, setSpacing(c, c.style.text.letterSpacing)),
     GPGP_PROPERTY("word-spacing", text.wordSpacing, setSpacing(c, c.style.text.wordSpacing)),
     GPGP_PROPERTY("text-anchor", text.anchor, choose(c.value, kAnchors, c.style.text.anchor)),
@@ -482,7 +489,7 @@ bool isPresentationAttribute(std::string_view name) {
   constexpr std::string_view unsupported[] = {"shape-rendering", "image-rendering", "clip"},
                              no[] = {"font",          "background", "background-color", "mix-blend-mode",
                                      "isolation",     "translate",  "rotate",           "scale",
-                                     "transform-box", "marker"};
+                                     "transform-box", "marker",     "font-kerning"};
   return (findProperty(name) && !oneOf(name, no)) || oneOf(name, unsupported);
 }
 

@@ -36,7 +36,7 @@ struct TextStyle {
   // inherited
   std::string families, dominantBaseline;
   double weight = 400, letterSpacing = 0, wordSpacing = 0;
-  bool italic = false, smallCaps = false, rightToLeft = false, vertical = false;
+  bool italic = false, smallCaps = false, unkerned = false, rightToLeft = false, vertical = false;
   double anchor = 0; ///< how much of a line lies before its place
   enum class Space { AsXml, Collapse, Preserve } space = Space::AsXml;
   // not inherited
@@ -76,7 +76,7 @@ struct Style {
   Color color;
   bool visible = true, mixesLinear = false; ///< the last: of its gradient's stops
   bool filtersLinear = true;
-  double fontSize = 16;
+  double fontSize = 12; ///< where nothing says one, as librsvg and resvg have it
   enum class Part { Fill, Stroke, Markers };
   std::array<Part, 3> paintOrder{Part::Fill, Part::Stroke, Part::Markers};
   std::array<std::string, 3> markers; ///< at the start, in the middle, at the end: what they say, unless none

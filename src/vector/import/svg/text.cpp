@@ -140,7 +140,7 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
     if (run != text.runs.size() - 1) text.runs.push_back(kept), run = text.runs.size() - 1;
     for (const char c : value) {
       const bool isSpace = c == ' ' || c == '\t' || c == '\n' || c == '\r';
-      if (isSpace && !keeps && text.afterSpace) continue;
+      if (c == 0x7f || (isSpace && !keeps && text.afterSpace)) continue; // what deletes is not seen
       if ((c & 0xc0) != 0x80) {
         if (text.characters.size() >= kMaxCharacters) return stop(node, "more than 100000 characters of text");
         Text::Character character;
@@ -305,7 +305,7 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     const TextStyle& style = run.state.style.text;
     spans.push_back({static_cast<uint32_t>(c.offset - from), end, style.families.c_str(), run.language.c_str(),
                      static_cast<float>(run.state.style.fontSize), static_cast<float>(style.weight),
-                     static_cast<float>(style.letterSpacing), style.italic, style.smallCaps});
+                     static_cast<float>(style.letterSpacing), style.italic, style.smallCaps, style.unkerned});
   }
   const Text::Run& run = text.runs[begin.run];
   const TextStyle& style = run.state.style.text;
