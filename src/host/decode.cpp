@@ -44,6 +44,15 @@ bool isUnmarkedCmyk(std::span<const uint8_t> bytes) {
 }
 
 constexpr int kLargest = 16384;
+/// Pixels that are decoded over and over: a progressive JPEG file has some ten scans, one made to take time thousands.
+constexpr uint64_t kMostScanned = uint64_t(1) << 32;
+
+/// At most: what looks like the beginning of one within compressed data counts, too.
+uint64_t scansOf(std::span<const uint8_t> bytes) {
+  uint64_t scans = 0;
+  for (size_t i = 0; i + 1 < bytes.size(); ++i) scans += bytes[i] == 0xff && bytes[i + 1] == 0xda;
+  return scans;
+}
 
 #ifdef GPGP_HOST_WEBP
 Picture decodeWebp(std::span<const uint8_t> bytes) {
@@ -66,7 +75,8 @@ Picture decodePicture(std::span<const uint8_t> bytes) {
   int width = 0, height = 0, channels = 0;
   const int size = static_cast<int>(bytes.size());
   if (bytes.size() > size_t(1) << 30 || !stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) ||
-      width > kLargest || height > kLargest || isUnmarkedCmyk(bytes))
+      width > kLargest || height > kLargest || isUnmarkedCmyk(bytes) ||
+      (bytes[0] == 0xff && scansOf(bytes) * uint64_t(width) * uint64_t(height) > kMostScanned))
     return {};
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4), stbi_image_free);

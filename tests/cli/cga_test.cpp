@@ -75,7 +75,8 @@ TEST(CliCga, DerivesOnTheGpuOrSaysWhatKeepsItOnTheCpu) {
 }
 
 TEST(CliCga, WhatNeedsAGraphSaysWhoHasNone) {
-  const TemporaryFile cga("a.cga", "attr h = 2\nLot --> extrude(h)\n"), lsystem("a.lsys", "axiom: F\n"), out("a.bin");
+  const TemporaryFile cga("a.cga", "attr h = 2\nattr s = \"x\"\nLot --> extrude(h)\n"), lsystem("a.lsys", "axiom: F\n"),
+      out("a.bin");
   const TemporaryFile roof("hip.cga", "Lot --> extrude(2) roofHip(30)\n");
   const TemporaryFile stack("a.gml", "[ /A /B ] 0 0 terminal\n/Box axiom\nX [ 0.5 { A } -1 { B } ] subdiv\n");
   for (const char* command : {"graph", "tune", "bake"})
@@ -86,6 +87,12 @@ TEST(CliCga, WhatNeedsAGraphSaysWhoHasNone) {
       EXPECT_EQ(result.exitCode, file == &roof ? 1 : 2) << result.err;
       EXPECT_NE(result.err.find("has no operator graph"), std::string::npos) << result.err;
     }
+  for (const char* wrong : {"h=abc", "h=1e39", "h=nan", "h="}) {
+    const ProcessResult result = gpgp({"spawn", cga.path(), "--attr", wrong});
+    EXPECT_EQ(result.exitCode, 2) << wrong;
+    EXPECT_NE(result.err.find("--attr h: it is a number in the file"), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(gpgp({"spawn", cga.path(), "--attr", "s=7", "--attr", "h=3", "--device", "cpu"}).exitCode, 0);
   EXPECT_EQ(gpgp({"graph", stack.path()}).exitCode, 0);
   EXPECT_NE(gpgp({"graph", cga.path(), "--set", "h=7.5"}).out.find("GrowAlong(Y,7.5)"), std::string::npos);
   EXPECT_EQ(gpgp({"bake", cga.path(), "--no-kernel", "--out", out.path()}).exitCode, 0);

@@ -155,7 +155,7 @@ std::optional<GpuDerivation> deriveOnGpu(const CgaOptions& options, const Common
   std::pmr::vector<uint32_t> kernel;
   GpuDerivation result;
   result.schedule = "interpreter";
-  if (options.schedule == "default") {
+  if (options.schedule == "default" && !session.device().isSoftware()) { // there it takes longer than it saves
     const spawn::KernelTarget target = targetFor(session.device(), grammar.graph);
     const auto schedule = scheduleFor(grammar.graph, options.schedule, {});
     const auto code = compileOrSay(grammar.graph, *schedule, std::span(&target, 1), false, options.file);

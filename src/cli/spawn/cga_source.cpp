@@ -1,11 +1,15 @@
 #include "cli/spawn/cga_source.h"
 
 #include "cli/shared/command.h"
+#include "cli/shared/messages.h"
 #include "host/files.h"
+#include "spawn/cga/program_format.h"
 #include "spawn/language/suggest.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 namespace gpgp::cli {
 using namespace spawn::cga;
@@ -47,11 +51,26 @@ std::vector<AttributeValue> attributeValues(const std::vector<std::string>& text
   return result;
 }
 
+namespace {
+/// Whether the file gives the attribute a number as it stands.
+bool isNumberBy(const Program& program, const AttributeInfo& attribute) {
+  if (!attribute.chunk) return false;
+  const uint32_t* code = &program.words[attribute.chunk + shader::kCgaChunkHeader];
+  return code[0] == shader::kCgaPushFloatCode && code[2] == shader::kCgaReturnCode;
+}
+} // namespace
+
 void checkAttributes(const std::vector<AttributeValue>& values, const Program& program) {
   for (const AttributeValue& value : values) {
     const auto isIt = [&](const AttributeInfo& a) { return a.name == value.name && !a.isMaterial; };
     const auto found = std::find_if(program.attributes.begin(), program.attributes.end(), isIt);
-    if (found != program.attributes.end() && !found->isConstant) continue;
+    if (found != program.attributes.end() && !found->isConstant) {
+      char* end = nullptr;
+      const bool isNumber = std::isfinite(std::strtof(value.text.c_str(), &end)) && end != value.text.c_str() && !*end;
+      if (isNumberBy(program, *found) && !isNumber && value.text != "true" && value.text != "false")
+        throw Usage("--attr " + value.name + ": it is a number in the file; \"" + value.text + "\" is none");
+      continue;
+    }
     if (found != program.attributes.end()) throw Usage("--attr " + value.name + ": it is a const, which cannot be set");
     spawn::Suggestion suggestion(value.name);
     for (const AttributeInfo& a : program.attributes)

@@ -62,10 +62,13 @@ public:
     info_.base = session.recorderInfo("canvas");
     info_.maxWidth = size.width;
     info_.maxHeight = size.height;
-    info_.maxPaths = 4096;
+    info_.maxPaths = 131072;
     info_.maxTileEntries = options.maxTileEntries;
     info_.targets = GPGP_CANVAS_TARGET_RGBA8;
-    info_.maxLayerPixels = (size.width + 128) * (size.height + 128) * 3;
+    // As many as there is room for; where a frame needs more, it says so.
+    const uint64_t wanted = uint64_t(size.width + 128) * (size.height + 128) * 3;
+    info_.maxLayerPixels = static_cast<uint32_t>(
+        std::min<uint64_t>(wanted, session.device().properties().limits.maxStorageBufferRange / 8));
     canvas_ = session.take(Canvas::create(session.context(), info_), "gpgpCreateCanvas");
     session.check(canvas_.prewarm(), "gpgpPrewarm");
   }
@@ -164,13 +167,13 @@ Outcome lottie(const VectorOptions& options, const CommonOptions& common, const 
   refuse(options.zoom != 1 || !options.center.empty(), "--zoom or --center");
   refuse(!options.stages.empty(), "--stages");
   const bool sheet = options.sheet.width > 0;
+  if (options.frame && !std::isfinite(*options.frame)) throw Failure("--frame takes a finite number");
 
   SvgMessages messages(options.allWarnings ? SIZE_MAX : kShownMessages);
   GpgpLottieSource source = GPGP_LOTTIE_SOURCE_INIT;
   source.name = name.c_str();
   source.data = bytes.data();
   source.size = bytes.size();
-  messages.attach(source);
   const SvgFiles files(options.file);
   source.fileSystem = files.fileSystem();
   VectorImages images;
@@ -179,12 +182,19 @@ Outcome lottie(const VectorOptions& options, const CommonOptions& common, const 
   SvgText fonts(options.fonts, true);
   fonts.attach(source);
 #endif
-  const auto begin = std::chrono::steady_clock::now();
-  source.scale = 0;
-  Result<Lottie> animation = Lottie::create(source);
-  const double parseMilliseconds = millisecondsSince(begin);
-  if (!animation) throw Failure(messages.count() ? messages.failure() : name + ": " + animation.name());
-  const GpgpLottieInfo about = *animation->info();
+  // Once for its size, which says how fine strokes must be; then with messages, those of its frames among them.
+  const auto read = [&](float scale) {
+    source.scale = scale;
+    messages.attach(source);
+    Result<Lottie> made = Lottie::create(source);
+    if (!made) throw Failure(messages.count() ? messages.failure() : name + ": " + made.name());
+    return std::move(*made);
+  };
+  GpgpLottieSource quiet = source;
+  quiet.imageFn = nullptr;
+  const Result<Lottie> first = Lottie::create(quiet);
+  if (!first) read(0); // which says why
+  GpgpLottieInfo about = first ? *first->info() : GpgpLottieInfo{};
 
   const uint32_t columns = sheet ? options.sheet.width : 1, rows = sheet ? options.sheet.height : 1;
   Size size = sizeAsked(options, static_cast<double>(about.width), static_cast<double>(about.height));
@@ -201,15 +211,10 @@ Outcome lottie(const VectorOptions& options, const CommonOptions& common, const 
     throw Failure("--sheet: the sheet would be larger than 16384 x 16384 pixels; a smaller --size helps");
   const float scale =
       std::min(static_cast<float>(size.width) / about.width, static_cast<float>(size.height) / about.height);
-  if (scale > 1) { // strokes are as fine as they are shown
-    source.scale = std::min(scale, 1e6f);
-    source.messageFn = nullptr; // all was said
-    source.imageFn = nullptr;
-    VectorImages again;
-    again.attach(source);
-    animation = Lottie::create(source);
-    if (!animation) throw Failure(name + ": " + animation.name());
-  }
+  const auto begin = std::chrono::steady_clock::now();
+  Lottie animation = read(scale > 1 ? std::min(scale, 1e6f) : 0);
+  const double parseMilliseconds = millisecondsSince(begin);
+  about = *animation.info();
 
   Session session(common);
   FramePainter painter(session, options, size, about, images);
@@ -220,7 +225,7 @@ Outcome lottie(const VectorOptions& options, const CommonOptions& common, const 
   for (uint32_t i = 0; i < columns * rows; ++i) {
     const double spacing = (about.endFrame - about.firstFrame) / (columns * rows);
     const double number = sheet ? about.firstFrame + spacing * i : options.frame.value_or(about.firstFrame);
-    const Frame frame = painter.draw(*animation, number, outcome.failure);
+    const Frame frame = painter.draw(animation, number, outcome.failure);
     for (uint32_t y = 0; y < size.height; ++y) {
       const size_t row = size_t(i / columns) * size.height + y;
       std::memcpy(&pixels[(row * columns + i % columns) * size.width * 4], &frame.pixels[size_t(y) * size.width * 4],

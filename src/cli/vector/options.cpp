@@ -1,6 +1,6 @@
 #include "cli/vector/options.h"
 
-#include "cli/shared/messages.h"
+#include "cli/shared/common.h"
 
 #include <algorithm>
 #include <cmath>
