@@ -1,5 +1,5 @@
-// Faults: for every n, the n-th host allocation, the n-th device allocation, or the n-th Vulkan object fails. Creation
-// then fails with the right error, nothing leaks, and the context goes on working.
+// Faults: for every n, the n-th host allocation, or the device allocations or Vulkan objects from the n-th on fail (of these
+// gpgp may ask again for less). Creation then fails with the right error, nothing leaks, and the context goes on working.
 #include "aligned.h"
 #include "scenarios.h"
 #include "vulkan_proxy.h"
@@ -44,7 +44,7 @@ struct Faults {
     return {this,
             [](void* user, const GpgpGpuAllocationRequest* request, GpgpGpuAllocation* allocation) -> VkResult {
               Faults& self = *static_cast<Faults*>(user);
-              if (++self.gpuCalls == self.gpuFailAt) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+              if (++self.gpuCalls >= self.gpuFailAt && self.gpuFailAt) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
               const VolkDeviceTable& vk = self.device->vk();
               const uint32_t type =
                   self.device->memoryType(request->requirements.memoryTypeBits, request->required, request->preferred);

@@ -51,7 +51,7 @@ template <class Tag, class R, class... A> struct Wrap<Tag, R(VKAPI_PTR*)(A...)> 
       describe(logged, arguments...);
       current->calls.push_back(logged);
       if constexpr (std::is_same_v<R, VkResult>)
-        if (creates(Tag::name) && ++current->creations == current->failAt) return current->failWith;
+        if (creates(Tag::name) && ++current->creations >= current->failAt && current->failAt) return current->failWith;
     }
     const UncountedNew driver; // what Vulkan allocates is not the library's
     return real(arguments...);
