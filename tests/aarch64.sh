@@ -41,21 +41,22 @@ say "build (build/aarch64)"
 shaders=${GPGP_SHADERS_FROM:-$root/build/release/generated}
 [[ -d $shaders/shaders ]] || shaders=
 configure aarch64 -DGPGP_PRECOMPILED_HEADERS=OFF -DGPGP_BUILD_TESTS=ON "-DGPGP_SHADERS_FROM=$shaders" -DGPGP_BUILD_CLI=ON
-libraries=(gpgp gpgp_compiler gpgp_text)
+libraries=(src/libgpgp src/libgpgp_compiler src/libgpgp_evaluator src/libgpgp_text)
 tests=(paths_test spawn_evaluator_test vector_patch_test vector_text_{shape,layout,query}_test visibility_cpu_reference_test)
-cmake --build "$build" --parallel "$(jobCount)" --target "${libraries[@]}" "${tests[@]}" >"$build/build.log" 2>&1 || {
+cmake --build "$build" --parallel "$(jobCount)" --target "${libraries[@]/%/.so}" "${tests[@]}" >"$build/build.log" 2>&1 || {
   grep -E -A 5 'error|FAILED' "$build/build.log" | head -n 60 >&2
   die "gpgp does not build for aarch64 ($build/build.log)"
 }
 for name in "${libraries[@]}"; do
-  library=$build/src/lib$name.so
-  echo "lib$name.so: $(($(stat -Lc %s "$library") / 1024)) KiB, $(file -Lb "$library" | cut -d, -f1-2)"
+  library=$build/$name.so
+  echo "$(basename "$name").so: $(($(stat -Lc %s "$library") / 1024)) KiB"
 done
 
 say "tests under qemu"
 failed=no
+sysroot=${GPGP_SYSROOT:-$root/build/aarch64-sysroot}
 emulator=(qemu-aarch64 -L /usr/aarch64-linux-gnu
-  -E "LD_LIBRARY_PATH=${GPGP_SYSROOT:-$root/build/aarch64-sysroot}/usr/lib/aarch64-linux-gnu")
+  -E "LD_LIBRARY_PATH=$sysroot/usr/lib/aarch64-linux-gnu:$sysroot/lib/aarch64-linux-gnu")
 for name in "${tests[@]}"; do
   begin=$SECONDS code=0
   timeout 900 "${emulator[@]}" "$build/$name" >"$build/$name.log" 2>&1 || code=$?

@@ -54,9 +54,11 @@ GPGP_FN void transform(GPGP_GRAPH GPGP_INOUT(Shape) s, uint op) {
 #define GPGP_ARGUMENT graphWords[s.node + kNodeArgument]
 #define GPGP_ARGUMENT2 graphWords[s.node + kNodeArgument2]
   // clang-format off
+  // NOLINTBEGIN(bugprone-macro-parentheses): `call` is a statement
 #define GPGP_CASE(name, number, relation, arguments, successors, multiplicity, shapes, kind, call) \
   case kOp##name: call; break;
 #define GPGP_DEFAULT(name, number, relation, arguments, successors, multiplicity, shapes, kind, call) default: call;
+  // NOLINTEND(bugprone-macro-parentheses)
   // clang-format on
   switch (op) { GPGP_PASSING_OPERATORS(GPGP_CASE, GPGP_DEFAULT) }
 #undef GPGP_CASE

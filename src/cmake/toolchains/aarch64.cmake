@@ -27,10 +27,10 @@ foreach(language C CXX) # headers of the sysroot behind the compiler's own
   set(CMAKE_${language}_STANDARD_INCLUDE_DIRECTORIES ${sysroot}/usr/include ${sysroot}/usr/include/aarch64-linux-gnu)
 endforeach()
 foreach(kind EXE SHARED MODULE) # what libraries link in turn
-  set(CMAKE_${kind}_LINKER_FLAGS_INIT "-L${sysroot}/usr/lib/aarch64-linux-gnu -Wl,-rpath-link,${sysroot}/usr/lib/aarch64-linux-gnu")
+  set(CMAKE_${kind}_LINKER_FLAGS_INIT "-L${sysroot}/usr/lib/aarch64-linux-gnu -Wl,-rpath-link,${sysroot}/usr/lib/aarch64-linux-gnu:${sysroot}/lib/aarch64-linux-gnu")
 endforeach()
 find_program(GPGP_QEMU qemu-aarch64)
 if(GPGP_QEMU)
   set(CMAKE_CROSSCOMPILING_EMULATOR
-    ${GPGP_QEMU} -L /usr/aarch64-linux-gnu -E LD_LIBRARY_PATH=${sysroot}/usr/lib/aarch64-linux-gnu)
+    ${GPGP_QEMU} -L /usr/aarch64-linux-gnu -E LD_LIBRARY_PATH=${sysroot}/usr/lib/aarch64-linux-gnu:${sysroot}/lib/aarch64-linux-gnu)
 endif()
