@@ -64,7 +64,7 @@ withoutText=ON
 [[ $all == no ]] || withoutText=OFF
 configure mingw -DGPGP_PRECOMPILED_HEADERS=OFF -DGPGP_BUILD_TESTS=ON "-DGPGP_SHADERS_FROM=$shaders" -DGPGP_BUILD_CLI=ON -DGPGP_WITH_TEXT=ON \
   -DGPGP_WITH_COMPILER=$compilers -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=$withoutText
-targets=(gpgp gpgp_static gpgp_evaluator gpgp_cli paths_test core_test contract_test wrong_call)
+targets=(gpgp gpgp_static gpgp_evaluator gpgp_evaluator_static gpgp_cli paths_test core_test contract_test wrong_call)
 [[ $all == no ]] || targets+=(gpgp_text gpgp_text_static vector_text_{shape,layout,query}_test visibility_edge_test
   vector_cpu_reference_test vector_patch_test visibility_cpu_reference_test)
 [[ $compilers == OFF ]] || targets=(all)
