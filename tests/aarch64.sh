@@ -42,7 +42,7 @@ shaders=${GPGP_SHADERS_FROM:-$root/build/release/generated}
 [[ -d $shaders/shaders ]] || shaders=
 configure aarch64 -DGPGP_PRECOMPILED_HEADERS=OFF -DGPGP_BUILD_TESTS=ON "-DGPGP_SHADERS_FROM=$shaders" -DGPGP_BUILD_CLI=ON
 libraries=(src/libgpgp src/libgpgp_compiler src/libgpgp_evaluator src/libgpgp_text)
-tests=(paths_test spawn_evaluator_test vector_patch_test vector_text_{shape,layout,query}_test visibility_cpu_reference_test)
+tests=(spawn_evaluator_test vector_patch_test vector_text_{shape,layout,query}_test visibility_cpu_reference_test)
 cmake --build "$build" --parallel "$(jobCount)" --target "${libraries[@]/%/.so}" "${tests[@]}" >"$build/build.log" 2>&1 || {
   grep -E -A 5 'error|FAILED' "$build/build.log" | head -n 60 >&2
   die "gpgp does not build for aarch64 ($build/build.log)"
