@@ -1,5 +1,6 @@
-// Faults: for every n, the n-th host allocation, or the device allocations or Vulkan objects from the n-th on fail (of these
-// gpgp may ask again for less). Creation then fails with the right error, nothing leaks, and the context goes on working.
+// Faults: for every n, the n-th host allocation, or the device allocations or Vulkan objects from the n-th on fail, as
+// gpgp may ask again for less. Creation then fails with the right error, nothing leaks, and the context goes on
+// working.
 #include "aligned.h"
 #include "scenarios.h"
 #include "vulkan_proxy.h"
