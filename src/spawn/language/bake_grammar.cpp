@@ -1,4 +1,5 @@
 // gpgpCompileGrammar, gpgpLinkGrammars: text, what builders hold, or baked grammars to a baked grammar.
+#include "core/blob.h"
 #include "spawn/codegen/compile_kernel.h"
 #include "spawn/codegen/generate.h"
 #include "spawn/codegen/schedules.h"
@@ -42,9 +43,8 @@ GpgpResult bake(const GpgpGrammarSource& first, const spawn::Graph& graph, bool 
       words.insert(words.end(), behind.begin(), behind.end());
     }
   }
-  GpgpBlob made{std::malloc(words.size() * 4), words.size() * 4};
+  const GpgpBlob made = core::copyToBlob(std::as_bytes(std::span(words)));
   if (!made.data) return fail(first, GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
-  std::memcpy(made.data, words.data(), made.size);
   *blob = made;
   return GPGP_SUCCESS;
 }

@@ -1,4 +1,5 @@
 // gpgpCompileLsystem.
+#include "core/blob.h"
 #include "spawn/lsystem/compile.h"
 
 #include <gpgp/lsystem.h>
@@ -42,9 +43,8 @@ GpgpResult GPGP_CALL gpgpCompileLsystem(const GpgpLsystemSource* source, GpgpBlo
     const auto words = spawn::lsystem::compile(text, overrides, diagnostics);
     for (const spawn::Diagnostic& d : diagnostics.sorted()) report(*source, d);
     if (!words) return GPGP_ERROR_INVALID_DATA;
-    GpgpBlob made{std::malloc(words->size() * 4), words->size() * 4};
+    const GpgpBlob made = core::copyToBlob(std::as_bytes(std::span(*words)));
     if (!made.data) return fail(*source, GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
-    std::memcpy(made.data, words->data(), made.size);
     *blob = made;
     return GPGP_SUCCESS;
   } catch (const std::bad_alloc&) {

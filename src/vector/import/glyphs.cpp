@@ -1,9 +1,8 @@
 // gpgpCompileGlyphs: glyphs to their baked form.
 #include "vector/patch/glyphs.h"
+#include "core/blob.h"
 
 #include <algorithm>
-#include <cstdlib>
-#include <cstring>
 
 using namespace gpgp;
 
@@ -22,9 +21,8 @@ core::Result<void> compile(const GpgpGlyphSource& source, GpgpBlob& blob) {
   const auto glyphs = vector::makeGlyphs({source.glyphs, source.glyphCount}, memory, source.jobSystem);
   if (!glyphs) return glyphs.error();
   const auto bytes = vector::bakeGlyphs(*glyphs, memory);
-  const GpgpBlob made{std::malloc(bytes.size()), bytes.size()};
+  const GpgpBlob made = core::copyToBlob(std::as_bytes(std::span(bytes)));
   if (!made.data) throw std::bad_alloc();
-  std::memcpy(made.data, bytes.data(), made.size);
   blob = made;
   return {};
 }

@@ -1,5 +1,6 @@
 // The C functions of lottie.h: no context is needed, messages go to those who made the animation.
 #include "api/check_struct.h"
+#include "core/blob.h"
 #include "vector/import/lottie/evaluate.h"
 #include "vector/patch/drawing.h"
 
@@ -144,9 +145,8 @@ GpgpResult GPGP_CALL gpgpCompileLottieFrame(GpgpLottie handle, double frame, con
                            static_cast<float>(lottie->animation.height)};
     std::copy_n(page, 4, drawing->viewport);
     const auto bytes = vector::bake(*drawing, memory);
-    GpgpBlob made{std::malloc(bytes.size()), bytes.size()};
+    const GpgpBlob made = core::copyToBlob(std::as_bytes(std::span(bytes)));
     if (!made.data) return makeError(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
-    std::memcpy(made.data, bytes.data(), made.size);
     *blob = made;
     return {};
   });

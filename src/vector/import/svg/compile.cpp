@@ -1,10 +1,9 @@
 // gpgpCompileSvg: SVG to a baked drawing.
+#include "core/blob.h"
 #include "vector/import/svg/import.h"
 #include "vector/patch/patches.h"
 
 #include <chrono>
-#include <cstdlib>
-#include <cstring>
 
 using namespace gpgp;
 
@@ -64,9 +63,8 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
   vector::Drawing kept = *drawing; // for the stages, whole
   if (source.methods == GPGP_DRAWING_IN_PASS) kept.curves.clear(), kept.patches.clear();
   const auto bytes = vector::bake(kept, memory);
-  GpgpBlob made{std::malloc(bytes.size()), bytes.size()};
+  const GpgpBlob made = core::copyToBlob(std::as_bytes(std::span(bytes)));
   if (!made.data) return fail(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
-  std::memcpy(made.data, bytes.data(), made.size);
   blob = made;
   if (source.report)
     *source.report = {counts.paths, counts.curves, counts.patches,
