@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -17,6 +18,10 @@ public:
   template <class T> void put(const T& value) {
     static_assert(std::is_trivially_copyable_v<T>);
     add(&value, sizeof value);
+  }
+  /// Of a tuple of references: what getEach reads.
+  template <class Fields> void putEach(const Fields& fields) {
+    std::apply([&](const auto&... field) { (put(field), ...); }, fields);
   }
   template <class T> void putAll(const std::vector<T>& values) { add(values.data(), values.size() * sizeof(T)); }
   void putBytes(ByteSpan values) { add(values.data(), values.size()); }
@@ -39,6 +44,9 @@ public:
     const ByteSpan from = take(sizeof value);
     if (!from.empty()) std::memcpy(static_cast<void*>(&value), from.data(), sizeof value);
     return value;
+  }
+  template <class Fields> void getEach(const Fields& fields) {
+    std::apply([&](auto&... field) { ((field = get<std::remove_reference_t<decltype(field)>>()), ...); }, fields);
   }
   template <class T> std::vector<T> getAll(size_t count) {
     std::vector<T> values;

@@ -4,23 +4,13 @@
 #include "compression.h"
 
 #include <cmath>
-#include <type_traits>
 
 namespace streaming {
 namespace {
 
-template <class Visit> void visit(FrameHeader& header, const Visit& each) {
-  each(header.number);
-  each(header.key);
-  each(header.codec);
-  each(header.pose);
-  each(header.seconds);
-  each(header.times);
-  each(header.visible);
-  each(header.blocks);
-  each(header.lowered);
-  each(header.dropped);
-  each(header.tiles);
+template <class Header> auto numbersOf(Header& h) {
+  return std::tie(h.number, h.key, h.codec, h.pose, h.seconds, h.times, h.visible, h.blocks, h.lowered, h.dropped,
+                  h.tiles);
 }
 constexpr size_t kKeyPlace = 4; // behind number
 
@@ -41,8 +31,7 @@ Bytes writeFrame(const FrameHeader& header, const FrameBlocks& blocks, ByteSpan 
   raw.putAll(blocks.visibleBits);
   const Bytes packed = compress(raw.bytes);
   Writer writer;
-  FrameHeader copy = header;
-  visit(copy, [&](const auto& field) { writer.put(field); });
+  writer.putEach(numbersOf(header));
   writer.put(static_cast<uint32_t>(raw.bytes.size()));
   writer.put(static_cast<uint32_t>(packed.size()));
   writer.putBytes(packed);
@@ -57,15 +46,12 @@ std::optional<ParsedFrame> parseFrame(ByteSpan frame, uint32_t triangleCount) {
   if (Reader(frame.last(4)).get<uint32_t>() != checksum(body)) return {};
   ParsedFrame parsed;
   Reader reader(body);
-  bool isFinite = true;
-  visit(parsed.header, [&](auto& field) {
-    using Field = std::remove_reference_t<decltype(field)>;
-    field = reader.get<Field>();
-    if constexpr (std::is_floating_point_v<Field>) isFinite = isFinite && std::isfinite(field);
-  });
+  reader.getEach(numbersOf(parsed.header));
   const auto rawSize = reader.get<uint32_t>();
   const ByteSpan packed = reader.take(reader.get<uint32_t>());
-  if (!reader.well() || !isFinite || parsed.header.key > 1 || static_cast<uint8_t>(parsed.header.codec) > 1) return {};
+  if (!reader.well() || !std::isfinite(parsed.header.seconds) || parsed.header.key > 1 ||
+      static_cast<uint8_t>(parsed.header.codec) > 1)
+    return {};
   parsed.texels = reader.take(reader.left());
   const uint32_t bitWords = (triangleCount + 31) / 32;
   if (rawSize > 8 + uint64_t{triangleCount} * 8 + bitWords * 4) return {};

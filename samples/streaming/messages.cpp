@@ -20,6 +20,15 @@ Reader open(ByteSpan message, MessageType type) {
   if (reader.get<uint8_t>() != static_cast<uint8_t>(type)) reader.take(SIZE_MAX);
   return reader;
 }
+// The numbers of messages in the order in which they are written and read.
+template <class Message> auto helloNumbers(Message& m) { return std::tie(m.world, m.width, m.height, m.fieldOfView); }
+template <class Message> auto welcomeNumbers(Message& m) {
+  return std::tie(m.atlasWidth, m.atlasHeight, m.triangleCount, m.gutter, m.codec);
+}
+template <class Message> auto poseNumbers(Message& m) {
+  return std::tie(m.number, m.seconds, m.view, m.earliest, m.latest);
+}
+
 bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 bool isWithin(float value, float low, float high) { return value >= low && value <= high; } // not a NaN
 
@@ -34,10 +43,7 @@ Bytes write(const Hello& message) {
   Writer writer = begin(MessageType::hello);
   writer.put(kMagic);
   writer.put(kVersion);
-  writer.put(message.world);
-  writer.put(message.width);
-  writer.put(message.height);
-  writer.put(message.fieldOfView);
+  writer.putEach(helloNumbers(message));
   return writer.bytes;
 }
 
@@ -45,10 +51,7 @@ std::optional<Hello> parseHello(ByteSpan message) {
   Reader reader = open(message, MessageType::hello);
   if (reader.get<uint32_t>() != kMagic || reader.get<uint32_t>() != kVersion) return {};
   Hello hello;
-  hello.world = reader.get<uint64_t>();
-  hello.width = reader.get<uint32_t>();
-  hello.height = reader.get<uint32_t>();
-  hello.fieldOfView = reader.get<float>();
+  reader.getEach(helloNumbers(hello));
   const auto isSide = [](uint32_t side) { return side >= 16 && side <= 4096; };
   if (!reader.ended() || !isSide(hello.width) || !isSide(hello.height) || !isWithin(hello.fieldOfView, 0.1f, 2.5f))
     return {};
@@ -58,11 +61,7 @@ std::optional<Hello> parseHello(ByteSpan message) {
 Bytes write(const Welcome& message) {
   Writer writer = begin(MessageType::welcome);
   writer.put(kVersion);
-  writer.put(message.atlasWidth);
-  writer.put(message.atlasHeight);
-  writer.put(message.triangleCount);
-  writer.put(message.gutter);
-  writer.put(message.codec);
+  writer.putEach(welcomeNumbers(message));
   writer.put(static_cast<uint32_t>(message.drawColours.size()));
   writer.putAll(message.drawColours);
   return writer.bytes;
@@ -72,38 +71,25 @@ std::optional<Welcome> parseWelcome(ByteSpan message) {
   Reader reader = open(message, MessageType::welcome);
   if (reader.get<uint32_t>() != kVersion) return {};
   Welcome welcome;
-  welcome.atlasWidth = reader.get<uint32_t>();
-  welcome.atlasHeight = reader.get<uint32_t>();
-  welcome.triangleCount = reader.get<uint32_t>();
-  welcome.gutter = reader.get<uint8_t>();
-  const auto codec = reader.get<uint8_t>();
-  welcome.codec = static_cast<Codec>(codec);
+  reader.getEach(welcomeNumbers(welcome));
   welcome.drawColours = reader.getAll<uint32_t>(reader.get<uint32_t>());
   const auto isSide = [](uint32_t side) { return side >= 128 && side <= 8192 && side % 128 == 0; };
   if (!reader.ended() || !isSide(welcome.atlasWidth) || !isSide(welcome.atlasHeight) || welcome.gutter > 1 ||
-      codec > 1 || welcome.triangleCount == 0 || welcome.triangleCount > kMaxTriangles)
+      static_cast<uint8_t>(welcome.codec) > 1 || welcome.triangleCount == 0 || welcome.triangleCount > kMaxTriangles)
     return {};
   return welcome;
 }
 
 Bytes write(const PoseMessage& message) {
   Writer writer = begin(MessageType::pose);
-  writer.put(message.number);
-  writer.put(message.seconds);
-  writer.put(message.view);
-  writer.put(message.earliest);
-  writer.put(message.latest);
+  writer.putEach(poseNumbers(message));
   return writer.bytes;
 }
 
 std::optional<PoseMessage> parsePose(ByteSpan message) {
   Reader reader = open(message, MessageType::pose);
   PoseMessage pose;
-  pose.number = reader.get<uint32_t>();
-  pose.seconds = reader.get<double>();
-  pose.view = reader.get<View>();
-  pose.earliest = reader.get<float>();
-  pose.latest = reader.get<float>();
+  reader.getEach(poseNumbers(pose));
   const View& view = pose.view;
   const bool well = reader.ended() && std::isfinite(pose.seconds) && std::abs(pose.seconds) < 1e9 &&
                     isFinite(view.eye) && glm::length(view.eye) < 1e5f && isFinite(view.forward) &&

@@ -7,9 +7,7 @@
 #include "spawn/language/suggest.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <cstdlib>
 
 namespace gpgp::cli {
 using namespace spawn::cga;
@@ -65,9 +63,7 @@ void checkAttributes(const std::vector<AttributeValue>& values, const Program& p
     const auto isIt = [&](const AttributeInfo& a) { return a.name == value.name && !a.isMaterial; };
     const auto found = std::find_if(program.attributes.begin(), program.attributes.end(), isIt);
     if (found != program.attributes.end() && !found->isConstant) {
-      char* end = nullptr;
-      const bool isNumber = std::isfinite(std::strtof(value.text.c_str(), &end)) && end != value.text.c_str() && !*end;
-      if (isNumberBy(program, *found) && !isNumber && value.text != "true" && value.text != "false")
+      if (isNumberBy(program, *found) && !numberIn(value.text) && value.text != "true" && value.text != "false")
         throw Usage("--attr " + value.name + ": it is a number in the file; \"" + value.text + "\" is none");
       continue;
     }

@@ -4,6 +4,33 @@
 
 namespace gpgp::cli {
 
+Measured<GpgpCanvasReport> drawPicture(Session& session, Canvas& canvas, const CanvasPicture& picture,
+                                       uint32_t repeat) {
+  const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
+  return session.measure(canvas, "rasterising", repeat,
+                         [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
+                           GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
+                           info.base = base;
+                           info.width = picture.size.width;
+                           info.height = picture.size.height;
+                           info.items = &picture.item;
+                           info.itemCount = 1;
+                           info.images = picture.textures.views().data();
+                           info.imageCount = static_cast<uint32_t>(picture.textures.views().size());
+                           info.samples = picture.antialiasing.samples;
+                           info.exactArea = picture.antialiasing.area ? VK_TRUE : VK_FALSE;
+                           std::copy(picture.background.begin(), picture.background.end(), info.background);
+                           info.target = picture.target.target({}, after);
+                           info.encodeSrgb = info.blendSrgb = VK_TRUE;
+                           return canvas.recordPrepare(commands, frame, info);
+                         });
+}
+
+uint32_t firstLayerPixels(const host::HeadlessDevice& device, const Size& size) {
+  const uint64_t pixels = uint64_t(size.width + 128) * (size.height + 128) * 3;
+  return static_cast<uint32_t>(std::min<uint64_t>(pixels, device.properties().limits.maxStorageBufferRange / 8));
+}
+
 std::optional<Canvas> largerCanvas(Session& session, GpgpCanvasCreateInfo& info, const GpgpCanvasReport& report) {
   const auto wanted = [](uint32_t needed, uint32_t given, double share) {
     // Somewhat more than is needed: what had no tile words has not been asked for its entries.

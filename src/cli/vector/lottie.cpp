@@ -65,10 +65,7 @@ public:
     info_.maxPaths = 131072;
     info_.maxTileEntries = options.maxTileEntries;
     info_.targets = GPGP_CANVAS_TARGET_RGBA8;
-    // As many as there is room for; where a frame needs more, it says so.
-    const uint64_t wanted = uint64_t(size.width + 128) * (size.height + 128) * 3;
-    info_.maxLayerPixels = static_cast<uint32_t>(
-        std::min<uint64_t>(wanted, session.device().properties().limits.maxStorageBufferRange / 8));
+    info_.maxLayerPixels = firstLayerPixels(session.device(), size);
     canvas_ = session.take(Canvas::create(session.context(), info_), "gpgpCreateCanvas");
     session.check(canvas_.prewarm(), "gpgpPrewarm");
   }
@@ -95,36 +92,15 @@ public:
                                                std::pmr::get_default_resource());
     if (!table) throw Failure(table.error().text);
     const Textures textures(session_.device(), shrunkToShown(images_.pictures(), *table, transform_));
-    const bool area = options_.antialiasing == "area";
-    const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
-    const auto rasterise = [&](uint32_t repeat) {
-      return session_.measure(canvas_, "rasterising", repeat,
-                              [&](VkCommandBuffer commands, const GpgpFrame& now, const GpgpRecordingInfo& base) {
-                                GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
-                                info.base = base;
-                                info.width = size_.width;
-                                info.height = size_.height;
-                                info.items = &item;
-                                info.itemCount = 1;
-                                info.images = textures.views().data();
-                                info.imageCount = static_cast<uint32_t>(textures.views().size());
-                                info.samples = area || options_.antialiasing.empty()
-                                                   ? 16
-                                                   : static_cast<uint32_t>(std::stoul(options_.antialiasing));
-                                info.exactArea = area ? VK_TRUE : VK_FALSE;
-                                std::copy(background_.begin(), background_.end(), info.background);
-                                info.target = target_.target({}, after);
-                                info.encodeSrgb = info.blendSrgb = VK_TRUE;
-                                return canvas_.recordPrepare(commands, now, info);
-                              });
-    };
-    auto drawn = rasterise(options_.repeat);
+    const CanvasPicture picture{item, textures, target_, size_, background_, antialiasingOf(options_)};
+    const auto rasterise = [&] { return drawPicture(session_, canvas_, picture, options_.repeat); };
+    auto drawn = rasterise();
     while (drawn.report.pathsDropped && options_.maxTileEntries == 0) {
       std::optional<Canvas> larger = largerCanvas(session_, info_, drawn.report);
       if (!larger) break;
       canvas_ = std::move(*larger);
       session_.check(canvas_.prewarm(), "gpgpPrewarm");
-      drawn = rasterise(options_.repeat);
+      drawn = rasterise();
     }
     if (drawn.report.pathsDropped && failure.empty()) {
       std::ostringstream text;

@@ -7,9 +7,16 @@
 
 namespace gpgp::cli {
 
+Antialiasing antialiasingOf(const VectorOptions& options) {
+  if (options.antialiasing.empty()) return {16, false};
+  if (options.antialiasing == "area") return {16, true};
+  return {static_cast<uint32_t>(std::stoul(options.antialiasing)), false};
+}
+
 Size sizeAsked(const VectorOptions& options, double pageWidth, double pageHeight) {
   if (options.width && options.height) return {options.width, options.height};
-  if (!options.width && !options.height) return options.size;
+  const bool hasPage = pageWidth > 0 && pageHeight > 0;
+  if (!hasPage || (!options.width && !options.height)) return options.size;
   const double other = options.width ? options.width * pageHeight / pageWidth : options.height * pageWidth / pageHeight;
   const double whole = std::max(std::ceil(other - 1e-3), 1.0);
   if (whole > kLargestSide)

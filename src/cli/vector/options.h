@@ -25,7 +25,14 @@ struct VectorOptions {
 constexpr size_t kShownMessages = 10;    ///< unless all are asked for
 constexpr uint32_t kLargestSide = 16384; ///< of all pictures
 
-/// The picture's size as the options ask for it, which the page completes; 0: they do not. Throws Failure.
+struct Antialiasing {
+  uint32_t samples; ///< of a pixel
+  bool area;        ///< exact areas beside them
+};
+Antialiasing antialiasingOf(const VectorOptions& options);
+
+/// The picture's size as the options ask for it, which the page completes where it has an extent; 0: they do not.
+/// Throws Failure.
 Size sizeAsked(const VectorOptions& options, double pageWidth, double pageHeight);
 
 } // namespace gpgp::cli

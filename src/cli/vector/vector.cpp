@@ -192,9 +192,8 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   source.methods = inPass ? GPGP_DRAWING_IN_PASS : GPGP_DRAWING_FLATTENED;
   const bool isSized = options.size.width || options.width || options.height;
   const std::optional<std::array<float, 4>> page = isSized ? pageOf(bytes, source) : std::nullopt;
-  const Size asked = page ? sizeAsked(options, static_cast<double>((*page)[2]), static_cast<double>((*page)[3]))
-                     : options.width && options.height ? Size{options.width, options.height}
-                                                       : options.size;
+  const std::array<float, 4> shown = page.value_or(std::array<float, 4>{});
+  const Size asked = sizeAsked(options, static_cast<double>(shown[2]), static_cast<double>(shown[3]));
   source.scale = scaleInto(asked, bytes, page);
   if (options.zoom > 1) source.scale = std::min(std::max(source.scale, 1.0f) * static_cast<float>(options.zoom), 1e6f);
   const Result<Blob> blob = compileSvg(source);
@@ -253,9 +252,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   if (options.reference && !table->plan.empty())
     throw Failure(name + ": the reference knows no masks, filters and blend modes; draw it without --reference");
   if (!table->plan.empty()) { // a first guess; the report says what is needed
-    const uint64_t pixels = uint64_t(size.width + 128) * (size.height + 128) * 3;
-    canvasInfo.maxLayerPixels =
-        static_cast<uint32_t>(std::min<uint64_t>(pixels, device.properties().limits.maxStorageBufferRange / 8));
+    canvasInfo.maxLayerPixels = firstLayerPixels(device, size);
     canvasInfo.maxDrawings = static_cast<uint32_t>(std::clamp<size_t>(table->plan.runs.size() * 2, 64, 65536));
   }
   Canvas canvas = session.take(Canvas::create(session.context(), canvasInfo), "gpgpCreateCanvas");
@@ -271,29 +268,9 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
       converted.convertMilliseconds +
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - beforeOutlines).count();
   const Textures textures(device, shrunkToShown(images.pictures(), *table, item.transform));
-  const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
-  const bool area = options.antialiasing == "area";
-  const uint32_t samples =
-      area || options.antialiasing.empty() ? 16 : static_cast<uint32_t>(std::stoul(options.antialiasing));
-  const auto rasterise = [&](uint32_t repeat) {
-    return session.measure(canvas, "rasterising", repeat,
-                           [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
-                             GpgpCanvasInfo info = GPGP_CANVAS_INFO_INIT;
-                             info.base = base;
-                             info.width = size.width;
-                             info.height = size.height;
-                             info.items = &item;
-                             info.itemCount = 1;
-                             info.images = textures.views().data();
-                             info.imageCount = static_cast<uint32_t>(textures.views().size());
-                             info.samples = samples;
-                             info.exactArea = area ? VK_TRUE : VK_FALSE;
-                             std::copy(std::begin(background), std::end(background), info.background);
-                             info.target = target.target({}, after);
-                             info.encodeSrgb = info.blendSrgb = VK_TRUE;
-                             return canvas.recordPrepare(commands, frame, info);
-                           });
-  };
+  const Antialiasing antialiasing = antialiasingOf(options);
+  const CanvasPicture picture{item, textures, target, size, background, antialiasing};
+  const auto rasterise = [&](uint32_t repeat) { return drawPicture(session, canvas, picture, repeat); };
   // Not counted: memory is used the first time, and the report says what the drawing needs.
   for (GpgpCanvasReport needs = rasterise(1).report; needs.pathsDropped && options.maxTileEntries == 0;
        needs = rasterise(1).report) {
@@ -321,9 +298,10 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
        << " patches; parsed in " << milliseconds(converted.parseMilliseconds) << ", converted in "
        << milliseconds(convertMilliseconds) << '\n'
        << size.width << " x " << size.height << " pixels"
-       << (shrink < 1 ? " (shrunk to them; --size makes more), " : ", ") << samples
-       << (area ? " samples and exact areas each, " : " samples each, ") << report.tileEntries << " tile entries; GPU "
-       << milliseconds(times.median()) << " (median of " << times.totals.size() << ") on " << device.name() << '\n';
+       << (shrink < 1 ? " (shrunk to them; --size makes more), " : ", ") << antialiasing.samples
+       << (antialiasing.area ? " samples and exact areas each, " : " samples each, ") << report.tileEntries
+       << " tile entries; GPU " << milliseconds(times.median()) << " (median of " << times.totals.size() << ") on "
+       << device.name() << '\n';
   if (facts.paths == 0) text << "nothing is drawn: the drawing has no shape with an area or a stroke\n";
   if (messages.count()) text << messages.count() << " parts of the drawing are approximated, left out or not valid\n";
   if (options.reference) text << psnr << " dB against 256 samples a pixel by winding numbers\n";
@@ -337,7 +315,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
                   {"height", size.height},
                   {"method", options.method},
                   {"aa", options.antialiasing.empty() ? "16" : options.antialiasing},
-                  {"samples", samples},
+                  {"samples", antialiasing.samples},
                   {"paths", facts.paths},
                   {"curves", facts.curves},
                   {"patches", facts.patches},

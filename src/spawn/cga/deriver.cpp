@@ -157,12 +157,11 @@ void Deriver::attributes(const Axiom& axiom) {
       const std::string& text = *found->second;
       // What is a string by the program stays one, though it reads as a number.
       const bool isString = words_[info.chunk + kCgaChunkHeader] == kCgaPushStringCode;
-      char* end = nullptr;
-      const float parsed = std::strtof(text.c_str(), &end);
+      const std::optional<float> parsed = numberIn(text);
       if (!isString && (text == "true" || text == "false"))
         value = cgaBoolValue(text == "true");
-      else if (!isString && !text.empty() && *end == 0 && std::isfinite(parsed))
-        value = cgaFloatValue(parsed);
+      else if (!isString && parsed)
+        value = cgaFloatValue(*parsed);
       else
         value = stringValue(text);
     } else if (info.chunk) {

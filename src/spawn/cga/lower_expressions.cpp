@@ -255,12 +255,11 @@ Value Lowering::attribute(Entity& entity, Place place) {
   for (const AttributeValue& value : given_)
     if (value.name == name && entity.kind == Definition::Kind::attribute) given = &value;
   if (given) { // as Deriver::attributes() takes it
-    char* end = nullptr;
-    const float parsed = std::strtof(given->text.c_str(), &end);
+    const std::optional<float> parsed = numberIn(given->text);
     if (!isString && (given->text == "true" || given->text == "false"))
       bound.value = valueOf(number(given->text == "true" ? 1.0f : 0.0f, true));
-    else if (!isString && !given->text.empty() && *end == 0 && std::isfinite(parsed))
-      bound.value = valueOf(number(parsed));
+    else if (!isString && parsed)
+      bound.value = valueOf(number(*parsed));
     else
       bound.value = valueOf(given->text);
   } else {

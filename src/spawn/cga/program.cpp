@@ -3,6 +3,8 @@
 #include "spawn/cga/names.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <iomanip>
 #include <sstream>
 
@@ -141,6 +143,13 @@ private:
 };
 
 } // namespace
+
+std::optional<float> numberIn(const std::string& text) {
+  char* end = nullptr;
+  const float number = std::strtof(text.c_str(), &end);
+  if (text.empty() || *end != 0 || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
 
 const SourceOf* Program::sourceOf(uint32_t at) const {
   const auto found = std::upper_bound(sources.begin(), sources.end(), at,

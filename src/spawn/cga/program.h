@@ -27,6 +27,8 @@ struct AttributeValue {
   std::string name; ///< with the prefixes of imports
   std::string text;
 };
+/// The finite number that a text is; none where it is another.
+std::optional<float> numberIn(const std::string& text);
 
 /// What a terminal of a program's operator graph is.
 struct GraphTerminal {
