@@ -124,6 +124,19 @@ TEST_F(FiltersTest, TilesRepeatTheirInput) {
       2e-3);
 }
 
+// Whose borders cross pixels: a flood that is repeated is a flood.
+TEST_F(FiltersTest, TilesHaveNoSeams) {
+  GpgpFilterStep part = step(GPGP_FILTER_FLOOD, {0.5f, 0.25f, 0.125f, 0.75f});
+  const float region[4] = {20.3f, 22.6f, 31.45f, 33.2f};
+  std::copy_n(region, 4, part.region);
+  expectPicture(
+      {part, inside(step(GPGP_FILTER_TILE, {}, 0, GPGP_FILTER_FIRST_STEP))},
+      [](int, int) {
+        return Pixel{0.5 * 0.75, 0.25 * 0.75, 0.125 * 0.75, 0.75};
+      },
+      2e-3);
+}
+
 TEST_F(FiltersTest, GroupsShowInFilters) {
   makeLayerCanvas();
   Scene scene;

@@ -385,7 +385,9 @@ TEST(SvgImport, Colours) {
       {"fill='hsl(120 100% 25% / 50%)'", {0, 0.5, 0, 0.5}},
       {"fill='hsla(0.5turn,100%,50%,.25)'", {0, 1, 1, 0.25}},
       {"fill='hsl(200grad,100%,50%)'", {0, 1, 1, 1}},
-      {"fill='hsl(120 100 25)'", {0, 0.5, 0, 1}}, // numbers are percentages
+      {"fill='hsl(120 100 25)'", {0, 0.5, 0, 1}},           // numbers are percentages
+      {"color='red' fill='hsl(120,100,25)'", {0, 0, 0, 1}}, // but not with commas
+      {"fill='rgb(0,255,0'", {0, 1, 0, 1}},                 // the end closes what is open
       {"fill='hwb(0 20% 40%)'", {0.6, 0.2, 0.2, 1}},
       {"fill='hwb(0 20 40)'", {0.6, 0.2, 0.2, 1}},
       {"fill='hwb(90deg 60% 60%)'", {0.5, 0.5, 0.5, 1}},

@@ -335,6 +335,35 @@ TEST(SvgEqual, TextIsOutlines) {
   EXPECT_EQ(said("<text x='1 a'>ab</text>"), Texts{"test.svg:2:10: error: <text> has x '1 a', which is no length"});
 }
 
+TEST(SvgEqual, UnicodeBidiIsMarksOfDirection) {
+  const auto shaped = [](const std::string& text) {
+    const std::string file = "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>" + text + "</svg>";
+    std::string lines;
+    const auto shape = [](void* user, const GpgpSvgText* line, GpgpSvgGlyphFn glyphFn, void* data) {
+      auto& all = *static_cast<std::string*>(user);
+      all.append(line->text, line->size);
+      all += '|';
+      for (uint32_t i = 0; i < line->spanCount; ++i) { // spans hold every byte once
+        EXPECT_EQ(line->spans[i].begin, i ? line->spans[i - 1].end : 0u);
+        EXPECT_EQ(line->spans[i].end, i + 1 < line->spanCount ? line->spans[i + 1].begin : line->size);
+      }
+      return shapeSquares(nullptr, line, glyphFn, data);
+    };
+    vector::svg::Reporter reporter(nullptr, nullptr, "test.svg");
+    EXPECT_TRUE(vector::svg::importSvg(std::as_bytes(std::span(file.data(), file.size())), reporter, {}, {}, {},
+                                       nullptr, {shape, &lines}));
+    return lines;
+  };
+  EXPECT_EQ(shaped("<text>a<tspan unicode-bidi='bidi-override' direction='rtl'>bc</tspan>d</text>"),
+            "a\u202ebc\u202cd|");
+  EXPECT_EQ(shaped("<text unicode-bidi='isolate'>a<tspan>b</tspan></text>"), "\u2066ab|"); // the line's end closes
+  EXPECT_EQ(shaped("<text><tspan unicode-bidi='isolate-override' direction='rtl'>a</tspan>b</text>"),
+            "\u2068\u202ea\u202c\u2069b|");
+  EXPECT_EQ(shaped("<text><tspan unicode-bidi='embed'>a</tspan><tspan x='5'>b</tspan></text>"), "\u202aa|\u202cb|");
+  EXPECT_EQ(shaped("<text unicode-bidi='plaintext'>a</text>"), "\u2068a|");
+  EXPECT_EQ(shaped("<text unicode-bidi='normal'>a</text>"), "a|");
+}
+
 TEST(SvgEqual, DrawingsAreImages) {
   const std::string inside =
       "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 20 10'%3E"

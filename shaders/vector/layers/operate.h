@@ -30,18 +30,20 @@ GPGP_FN vec2 pointOf(OperationRecord o, float x, float y) {
   return vec2(o.toSpace.x * x + o.toSpace.z * y + o.offsets.z, o.toSpace.y * x + o.toSpace.w * y + o.offsets.w);
 }
 
-// How much of a pixel lies inside the region.
-GPGP_FN float inRegion(OperationRecord o, int x, int y) {
-  if ((o.flags & kHasRegion) == 0u) return 1.0f;
+// How much of a pixel lies inside a region of the operation's space.
+GPGP_FN float coverageOf(OperationRecord o, vec4 region, int x, int y) {
   const vec2 p = pointOf(o, float(x) + 0.5f, float(y) + 0.5f);
   // How far the sides lie away, in pixels.
   const float acrossX = 1.0f / max(sqrt(o.toSpace.x * o.toSpace.x + o.toSpace.z * o.toSpace.z), 1e-20f);
   const float acrossY = 1.0f / max(sqrt(o.toSpace.y * o.toSpace.y + o.toSpace.w * o.toSpace.w), 1e-20f);
-  const float left = clamp((p.x - o.region.x) * acrossX + 0.5f, 0.0f, 1.0f);
-  const float right = clamp((o.region.z - p.x) * acrossX + 0.5f, 0.0f, 1.0f);
-  const float top = clamp((p.y - o.region.y) * acrossY + 0.5f, 0.0f, 1.0f);
-  const float bottom = clamp((o.region.w - p.y) * acrossY + 0.5f, 0.0f, 1.0f);
+  const float left = clamp((p.x - region.x) * acrossX + 0.5f, 0.0f, 1.0f);
+  const float right = clamp((region.z - p.x) * acrossX + 0.5f, 0.0f, 1.0f);
+  const float top = clamp((p.y - region.y) * acrossY + 0.5f, 0.0f, 1.0f);
+  const float bottom = clamp((region.w - p.y) * acrossY + 0.5f, 0.0f, 1.0f);
   return max(left + right - 1.0f, 0.0f) * max(top + bottom - 1.0f, 0.0f);
+}
+GPGP_FN float inRegion(OperationRecord o, int x, int y) {
+  return (o.flags & kHasRegion) != 0u ? coverageOf(o, o.region, x, y) : 1.0f;
 }
 
 #if OPERATIONS == 0 || defined(__cplusplus)
@@ -175,6 +177,24 @@ GPGP_FN vec4 convolveAt(OperationRecord o, int x, int y) {
   const float shown = clamp(alpha, 0.0f, 1.0f);
   return vec4(min(color, vec3(shown)), shown);
 }
+// A tile's pixels along its border are in it only in part. What is read between pixels is divided by how much of them
+// is, so that neighbouring tiles show no seam.
+GPGP_FN vec4 tileAt(OperationRecord o, int x, int y) {
+  const vec2 p = edgePoint(pointOf(o, float(x) + 0.5f, float(y) + 0.5f), o.values[2], 2u);
+  const vec2 q = pixelOf(o, p.x, p.y);
+  const float u = floor(q.x - 0.5f), v = floor(q.y - 0.5f), s = q.x - 0.5f - u, t = q.y - 0.5f - v;
+  vec4 sum = vec4(0.0f);
+  float inside = 0.0f;
+  for (int k = 0; k < 4; ++k) {
+    const int i = int(u) + k % 2, j = int(v) + k / 2;
+    const float weight = (k % 2 == 0 ? 1.0f - s : s) * (k / 2 == 0 ? 1.0f - t : t);
+    sum += texelAt(o.a, i, j) * weight;
+    inside += coverageOf(o, o.values[2], i, j) * weight;
+  }
+  sum = sum / max(inside, 0.125f);
+  const float alpha = min(sum.w, 1.0f);
+  return vec4(min(vec3(sum), vec3(alpha)), alpha);
+}
 GPGP_FN vec4 neighbourhoodAt(OperationRecord o, int x, int y) {
   if (o.kind == kOperationMorphology) {
     const bool axisY = (o.flags & kAxisY) != 0u, most = o.mode != 0u;
@@ -187,11 +207,7 @@ GPGP_FN vec4 neighbourhoodAt(OperationRecord o, int x, int y) {
     return found;
   }
   if (o.kind == kOperationConvolve) return convolveAt(o, x, y);
-  if (o.kind == kOperationTile) {
-    const vec2 p = edgePoint(pointOf(o, float(x) + 0.5f, float(y) + 0.5f), o.values[2], 2u);
-    const vec2 q = pixelOf(o, p.x, p.y);
-    return readBetween(o.a, q.x, q.y);
-  }
+  if (o.kind == kOperationTile) return tileAt(o, x, y);
   const vec4 map = readB(o, x, y); // kOperationDisplace
   const vec4 straight = vec4(straightOf(map), map.w);
   const float u = o.values[0].x * (straight[int(o.mode % 4u)] - 0.5f);

@@ -7,8 +7,10 @@
 
 namespace gpgp::vector::svg {
 std::string referenceOf(std::string_view text) {
-  if (text.size() < 5 || !isWord(text.substr(0, 4), "url(") || text.back() != ')') return {};
-  text = trim(text.substr(4, text.size() - 5));
+  if (text.size() < 5 || !isWord(text.substr(0, 4), "url(")) return {};
+  text.remove_prefix(4);
+  if (text.back() == ')') text.remove_suffix(1); // the end of the value closes what is open (CSS Syntax 3, 5.3)
+  text = trim(text);
   if (text.size() > 1 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front())
     text = text.substr(1, text.size() - 2);
   return std::string(text.substr(0, 1) == "#" ? text : std::string_view());

@@ -188,7 +188,8 @@ double channelOfHue(double h, double s, double l, double n) {
   return l - a * std::max(-1.0, std::min({k - 3, 9 - k, 1.0}));
 }
 
-/// rgb(1, 2, 3), rgb(10% 20% 30% / 50%), hsl(120deg, 50%, 50%), hwb(0.5turn 10% 20%) and their forms with alpha.
+/// rgb(1, 2, 3), rgb(10% 20% 30% / 50%), hsl(120deg, 50%, 50%), hwb(0.5turn 10% 20%) and their forms with alpha. The
+/// end of the value closes what is open (CSS Syntax 3, 5.3).
 bool parseFunction(std::string_view text, Color& color) {
   Scanner s(text);
   const std::string_view name = s.name();
@@ -196,6 +197,7 @@ bool parseFunction(std::string_view text, Color& color) {
   if ((!byHue && name != "rgb" && name != "rgba") || !s.take("(")) return false;
   double v[4] = {0, 0, 0, 1};
   int count = 0;
+  bool hasComma = false, isNumber = false; // hsl() with commas has percentages only (CSS Color 4, 7.1)
   s.skipSpace();
   while (!s.done() && s.peek() != ')') {
     if (count == 4 || (!s.take("none") && !s.number(v[count]))) return false;
@@ -204,18 +206,20 @@ bool parseFunction(std::string_view text, Color& color) {
     else if (count < 3 && !byHue)
       v[count] /= 255;
     else if (count < 3 && count > 0)
-      v[count] /= 100; // numbers are percentages
+      v[count] /= 100, isNumber = true; // numbers are percentages
     if (byHue && count == 0) {
       if (s.take("grad")) v[0] *= 0.9;
       if (s.take("rad")) v[0] *= 57.29577951308232;
       if (s.take("turn")) v[0] *= 360;
       s.take("deg");
     }
+    s.skipSpace();
+    hasComma |= s.peek() == ',';
     s.skipCommaSpace();
     if (s.take("/")) s.skipSpace();
     ++count;
   }
-  if (!s.take(")") || !s.done() || count < 3) return false;
+  if ((!s.take(")") && !s.done()) || !s.done() || count < 3 || (hsl && hasComma && isNumber)) return false;
   if (byHue) {
     const double h = std::fmod(std::fmod(v[0], 360.0) + 360, 360.0);
     const double b = std::clamp(v[1], 0.0, 1.0), c = std::clamp(v[2], 0.0, 1.0);

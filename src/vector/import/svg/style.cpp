@@ -37,13 +37,12 @@ bool parsePaint(std::string_view text, Paint& paint) {
   Paint p;
   const auto isUrl = [](std::string_view value) { return isWord(value.substr(0, 4), "url("); };
   if (isUrl(text)) {
-    const size_t end = text.find(')');
-    if (end == text.npos) return false;
+    const size_t end = std::min(text.find(')'), text.size()); // the end of the value closes what is open
     std::string_view target = trim(text.substr(4, end - 4));
     if (target.size() >= 2 && (target[0] == '"' || target[0] == '\'')) target = target.substr(1, target.size() - 2);
     p.kind = Paint::Kind::Reference;
     p.reference = target;
-    text = trim(text.substr(end + 1));
+    text = trim(text.substr(std::min(end + 1, text.size())));
     if (!text.empty()) {
       Paint rest;
       if (isUrl(text) || !parsePaint(text, rest) || rest.kind == Paint::Kind::ContextFill ||
@@ -345,6 +344,10 @@ bool setKerning(const Context& c) { // of SVG 1.1; other lengths than 0 are not 
   return c.style.text.unkerned = parseLength(c.value, c.lengths, LengthAxis::X, length) && length == 0, true;
 }
 constexpr Word<bool> kDirections[] = {{"ltr", false}, {"rtl", true}};
+using Bidi = TextStyle::Bidi;
+constexpr Word<Bidi> kBidis[] = {{"normal", Bidi::Normal},          {"embed", Bidi::Embed},
+                                 {"bidi-override", Bidi::Override}, {"isolate", Bidi::Isolate},
+                                 {"plaintext", Bidi::Plaintext},    {"isolate-override", Bidi::IsolateOverride}};
 bool setVertical(const Context& c) {
   const std::string lower = lowered(c.value);
   return c.style.text.vertical = lower.starts_with("tb") || lower.starts_with("vertical"), !lower.empty();
@@ -428,6 +431,7 @@ const Property kProperties[] = {
     GPGP_PROPERTY("dominant-baseline", text.dominantBaseline, (c.style.text.dominantBaseline = lowered(c.value), true)),
     GPGP_PROPERTY("alignment-baseline", text.alignmentBaseline,
                   (c.style.text.alignmentBaseline = lowered(c.value), true)),
+    GPGP_PROPERTY("unicode-bidi", text.bidi, choose(c.value, kBidis, c.style.text.bidi)),
     GPGP_PROPERTY("baseline-shift", text.baselineShift, (c.style.text.baselineShift = lowered(c.value), true)),
     GPGP_PROPERTY("text-decoration", text.decoration,
                   c.value.find(',') == c.value.npos && (c.style.text.decoration = lowered(c.value), true)),
@@ -456,6 +460,7 @@ Style Style::inherited() const {
   s.background = fresh.background;
   s.unsupportedEffect = false;
   s.text.baselineShift.clear(), s.text.alignmentBaseline.clear(), s.text.decoration.clear();
+  s.text.bidi = fresh.text.bidi;
   s.stopColor = fresh.stopColor;
   s.stopOpacity = fresh.stopOpacity;
   s.clipPath.clear();

@@ -41,6 +41,7 @@ struct TextStyle {
   enum class Space { AsXml, Collapse, Preserve } space = Space::AsXml;
   // not inherited
   std::string baselineShift, alignmentBaseline, decoration;
+  enum class Bidi { Normal, Embed, Override, Isolate, IsolateOverride, Plaintext } bidi = Bidi::Normal;
 };
 
 /// A part of the property filter (Filter Effects 1, chapter 5).

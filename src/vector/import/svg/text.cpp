@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace gpgp::vector::svg {
 namespace {
@@ -22,6 +23,26 @@ double baselineOffset(std::string_view baseline, const GpgpSvgGlyph& g) {
   if (baseline == "text-before-edge" || baseline == "before-edge") return em(g.ascent);
   if (baseline == "text-after-edge" || baseline == "after-edge" || baseline == "ideographic") return -em(g.descent);
   return 0;
+}
+
+/// The marks of direction that `unicode-bidi` stands for, before and behind an element's characters.
+struct BidiMarks {
+  std::string before, behind;
+};
+BidiMarks bidiMarksOf(const TextStyle& style) {
+  constexpr const char *popsEmbedding = "\u202c", *popsIsolate = "\u2069", *firstStrong = "\u2068";
+  const std::string embedding = style.rightToLeft ? "\u202b" : "\u202a",
+                    override = style.rightToLeft ? "\u202e" : "\u202d",
+                    isolate = style.rightToLeft ? "\u2067" : "\u2066";
+  switch (style.bidi) {
+  case TextStyle::Bidi::Normal: return {};
+  case TextStyle::Bidi::Embed: return {embedding, popsEmbedding};
+  case TextStyle::Bidi::Override: return {override, popsEmbedding};
+  case TextStyle::Bidi::Isolate: return {isolate, popsIsolate};
+  case TextStyle::Bidi::IsolateOverride: return {firstStrong + override, std::string(popsEmbedding) + popsIsolate};
+  case TextStyle::Bidi::Plaintext: return {firstStrong, popsIsolate};
+  }
+  return {};
 }
 
 /// Whether a character stands upright in vertical lines (Unicode Standard Annex 50, in outline): those of East Asia,
@@ -93,7 +114,9 @@ struct Importer::Text {
     size_t first = 0, last = 0; ///< its characters
   };
   struct Character {
-    size_t offset = 0, run = 0;
+    size_t begin = 0;  ///< of the marks of direction before it
+    size_t offset = 0; ///< its own first byte
+    size_t run = 0;
     std::optional<double> x, y;
     double dx = 0, dy = 0, rotate = 0;
   };
@@ -113,6 +136,7 @@ struct Importer::Text {
   };
   pugi::xml_node node;
   std::string bytes;
+  std::string marks; ///< of direction, before the next character
   std::vector<Run> runs;
   std::vector<Element> elements;
   std::vector<Character> characters;
@@ -131,6 +155,8 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
   if (!xmlSpace.empty()) preserves = xmlSpace == "preserve";
   const bool keeps = state.style.text.space == Space::AsXml ? preserves : state.style.text.space == Space::Preserve;
   const size_t own = text.runs.size(), element = text.elements.size();
+  const BidiMarks marks = bidiMarksOf(state.style.text);
+  text.marks += marks.before;
   text.runs.back().state = state;
   text.elements.push_back({node, state, text.characters.size(), 0});
   size_t run = own - 1;
@@ -144,6 +170,8 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
       if ((c & 0xc0) != 0x80) {
         if (text.characters.size() >= kMaxCharacters) return stop(node, "more than 100000 characters of text");
         Text::Character character;
+        character.begin = text.bytes.size();
+        text.bytes += std::exchange(text.marks, {});
         character.offset = text.bytes.size();
         character.run = run;
         text.characters.push_back(character);
@@ -254,6 +282,7 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
     collectText(child, inner, keeps, text);
   }
   text.elements[element].last = text.characters.size();
+  text.marks += marks.behind;
 }
 
 /// Gives the characters what elements say of their places; what is further in counts (SVG 2, 11.10.1).
@@ -291,19 +320,18 @@ void Importer::placeText(Text& text) {
 /// Shapes the characters of a line and places its glyphs, from the current text position on.
 void Importer::shapeLine(Text& text, size_t first, size_t last) {
   const Text::Character& begin = text.characters[first];
-  const size_t from = begin.offset,
-               to = last < text.characters.size() ? text.characters[last].offset : text.bytes.size();
+  const size_t from = begin.begin, to = last < text.characters.size() ? text.characters[last].begin : text.bytes.size();
   std::vector<GpgpSvgTextSpan> spans;
   for (size_t i = first; i < last; ++i) {
     const Text::Character& c = text.characters[i];
-    const auto end = static_cast<uint32_t>((i + 1 < last ? text.characters[i + 1].offset : to) - from);
+    const auto end = static_cast<uint32_t>((i + 1 < last ? text.characters[i + 1].begin : to) - from);
     if (i > first && text.characters[i - 1].run == c.run) {
       spans.back().end = end;
       continue;
     }
     const Text::Run& run = text.runs[c.run];
     const TextStyle& style = run.state.style.text;
-    spans.push_back({static_cast<uint32_t>(c.offset - from), end, style.families.c_str(), run.language.c_str(),
+    spans.push_back({static_cast<uint32_t>(c.begin - from), end, style.families.c_str(), run.language.c_str(),
                      static_cast<float>(run.state.style.fontSize), static_cast<float>(style.weight),
                      static_cast<float>(style.letterSpacing), style.italic, style.smallCaps, style.unkerned});
   }
@@ -353,7 +381,7 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     const auto place =
         std::upper_bound(text.characters.begin() + static_cast<ptrdiff_t>(first) + 1,
                          text.characters.begin() + static_cast<ptrdiff_t>(last), g.metrics.cluster + from,
-                         [](size_t offset, const Text::Character& c) { return offset < c.offset; });
+                         [](size_t offset, const Text::Character& c) { return offset < c.begin; });
     const size_t i = static_cast<size_t>(place - text.characters.begin()) - 1;
     g.character = i;
     const Text::Character& c = text.characters[i];
