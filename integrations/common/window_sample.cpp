@@ -2,7 +2,7 @@
 #include "window_sample.h"
 
 #ifdef GPGP_SAMPLE_TEXT
-#include "gpgp_glyph_cache.hpp"
+#include "text_line.h"
 #endif
 
 #include <algorithm>
@@ -14,55 +14,6 @@ namespace {
 using sample::need;
 using sample::Options;
 using sample::take;
-
-#ifdef GPGP_SAMPLE_TEXT
-/// A line of text, laid out once.
-struct Line {
-  sample::FontChain fonts;
-  Shaper shaper;
-  Layout layout;
-  GpgpLayoutInfo info = GPGP_LAYOUT_INFO_INIT;
-  integration::GlyphCache glyphs;
-  integration::PlacedText placed;
-  List list;
-  bool told = false; // that not all has found room
-
-  Line(const integration::Device& device, GpgpContext context, const Options& options, float size) : fonts(options) {
-    if (fonts.empty()) return;
-    shaper = take(Shaper::create(), "gpgpCreateShaper");
-    layout = take(shaper.layout(), "gpgpCreateLayout");
-    auto textInfo = init<GpgpTextInfo>();
-    textInfo.text = options.text.data();
-    textInfo.size = options.text.size();
-    fonts.set(textInfo.style);
-    textInfo.style.size = size;
-    std::fill_n(textInfo.style.color, 4, 1.0f);
-    need(layout.set(textInfo), "gpgpSetLayoutText");
-    info = take(layout.info(), "gpgpGetLayoutInfo");
-    for (uint32_t i = 0; i < info.missingCount; ++i)
-      std::fprintf(stderr, "no font has U+%04X\n", info.missing[i].character);
-    integration::GlyphCacheInfo cacheInfo;
-    cacheInfo.context = context;
-    cacheInfo.pictureDevice.device = device.device; // for emoji that are pictures
-    cacheInfo.pictureDevice.getDeviceProcAddr = vkGetDeviceProcAddr;
-    vkGetPhysicalDeviceMemoryProperties(device.physical, &cacheInfo.pictureDevice.memory);
-    need(glyphs.create(cacheInfo), "gpgpCreateGlyphSet");
-    list = take(List::create(context), "gpgpCreateList");
-  }
-  /// The list, filled anew.
-  GpgpList at(float x, float y) {
-    if (!layout) return nullptr;
-    placed.clear();
-    if (need(glyphs.place(info, x, y, 1, placed), "gpgpAddGlyphs") == GPGP_BUDGET_EXCEEDED && !told) {
-      std::fprintf(stderr, "%u glyphs found no room and are not shown\n", placed.dropped);
-      told = true;
-    }
-    need(list.clear(), "gpgpResetList");
-    need(glyphs.addTo(list, placed), "gpgpAddText");
-    return list;
-  }
-};
-#endif
 
 class Sample {
 public:
@@ -76,7 +27,11 @@ public:
     drawing_ = sample::loadDrawing(context_, options.svg);
     drawingInfo_ = take(drawing_.info(), "gpgpGetDrawingInfo");
 #ifdef GPGP_SAMPLE_TEXT
-    line_.emplace(device, context_, options, 0.06f * static_cast<float>(options.height));
+    integration::PictureDevice pictures; // for emoji that are pictures
+    pictures.device = device.device;
+    pictures.getDeviceProcAddr = vkGetDeviceProcAddr;
+    pictures.memory = device.memory;
+    line_.emplace(pictures, context_, options, 0.06f * static_cast<float>(options.height));
 #endif
     auto canvasInfo = init<GpgpCanvasCreateInfo>();
     canvasInfo.base.label = "window";
@@ -186,7 +141,7 @@ private:
   Drawing drawing_;
   GpgpDrawingInfo drawingInfo_ = GPGP_DRAWING_INFO_INIT;
 #ifdef GPGP_SAMPLE_TEXT
-  std::optional<Line> line_;
+  std::optional<sample::TextLine> line_;
 #endif
   Canvas canvas_;
   CanvasHistory view_;
