@@ -79,12 +79,11 @@ int run(const Options& options) {
     application.exit();
   });
   uint32_t shown = 0;
-  QObject::connect(
-      window, &QQuickWindow::frameSwapped, &application,
-      [&] { // on the GUI thread
-        if (++shown == options.frames) application.exit();
-      },
-      Qt::QueuedConnection);
+  const auto count = [&] { // on the GUI thread
+    if (++shown == options.frames) application.exit();
+    if (shown < options.frames) window->update(); // whatever the animation does
+  };
+  QObject::connect(window, &QQuickWindow::frameSwapped, &application, count, Qt::QueuedConnection);
   window->show();
   application.exec();
   if (code == 0 && !options.picture.empty()) {
