@@ -159,11 +159,11 @@ enum class Axis : uint32_t { x, y, z };
 
 /// Builds a grammar in code instead of text (gpgpCreateGrammarBuilder). Operators have the names of the language:
 ///
-///   GrammarBuilder g = *GrammarBuilder::create();
-///   g.axiom(GPGP_SHAPE_BOX, "Tower").terminal("Floor Roof", 1, 0);
-///   const auto height = g.variable("height", 3);
-///   g.rule("Tower", g.subDiv(Axis::y, {{-1, g.repeat(Axis::y, height, "Floor")}, {height * 0.5f, "Roof"}}));
-///   auto blob = g.compile();
+///     GrammarBuilder g = *GrammarBuilder::create();
+///     g.axiom(GPGP_SHAPE_BOX, "Tower").terminal("Floor Roof", 1, 0);
+///     const auto height = g.variable("height", 3);
+///     g.rule("Tower", g.subDiv(Axis::y, {{-1, g.repeat(Axis::y, height, "Floor")}, {height * 0.5f, "Roof"}}));
+///     auto blob = g.compile();
 class GrammarBuilder : public Handle<GpgpGrammarBuilder> {
 public:
   using Handle::Handle;

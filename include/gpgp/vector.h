@@ -174,7 +174,7 @@ typedef struct GpgpSvgReport {
 /** Receives a stage of the conversion as SVG text, to be looked at. The text is not null-terminated. @lifetime call */
 typedef void(GPGP_CALL* GpgpStageFn)(void* userData, const char* stage, const char* svg, size_t size);
 
-/** Receives an image of an <image> or <feImage> element: a PNG, JPEG or other file that the element embeds as a data:
+/** Receives an image of an `image` or `feImage` element: a PNG, JPEG or other file that the element embeds as a data:
  *  URI, or that `fileSystem` reads. An image that several elements share is passed once.
  *
  *  To accept the image, the callback writes its size in pixels and returns VK_TRUE. The drawing then paints with image

@@ -2,6 +2,7 @@
 #
 #   shared libraries   export gpgp* and nothing else; soname is the major version, and the minor one while that is 0
 #   install            headers, libraries, gpgpConfig.cmake, gpgp.pc, the gpgp command; relocatable
+#   components         of packages (packages.cmake): runtime, runtime_compiler, runtime_text, dev, tools
 #
 # GPGP_INSTALL is off where gpgp is a part of another project: what that installs is its own affair.
 option(GPGP_INSTALL "Make install rules" ${PROJECT_IS_TOP_LEVEL})
@@ -29,11 +30,19 @@ foreach(target gpgp gpgp_compiler gpgp_evaluator gpgp_text)
     endif()
   endif()
 endforeach()
-install(TARGETS ${installed} EXPORT gpgpTargets)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev) # what names no other
+foreach(target IN LISTS installed)
+  set(component runtime)
+  if(target MATCHES "^gpgp_(compiler|text)")
+    set(component runtime_${CMAKE_MATCH_1})
+  endif()
+  install(TARGETS ${target} EXPORT gpgpTargets RUNTIME COMPONENT ${component}
+    LIBRARY COMPONENT ${component} NAMELINK_COMPONENT dev)
+endforeach()
 if(TARGET gpgp_cli)
   file(RELATIVE_PATH relative /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_INSTALL_LIBDIR})
   set_target_properties(gpgp_cli PROPERTIES INSTALL_RPATH "$ORIGIN/${relative}")
-  install(TARGETS gpgp_cli EXPORT gpgpTargets)
+  install(TARGETS gpgp_cli EXPORT gpgpTargets RUNTIME COMPONENT tools)
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/gpgp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING
   PATTERN "*.h" PATTERN "*.hpp")
@@ -112,3 +121,4 @@ foreach(target gpgp gpgp_compiler gpgp_evaluator gpgp_text)
   configure_file(${CMAKE_CURRENT_LIST_DIR}/gpgp.pc.in ${PROJECT_BINARY_DIR}/package/${target}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/package/${target}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endforeach()
+include(${CMAKE_CURRENT_LIST_DIR}/packages.cmake)

@@ -35,6 +35,7 @@ END
   # Without a device it says what it needs.
   echo 'int main() { try { imgui::Renderer renderer({}); } catch (const std::exception&) { return 0; } return 1; }'
 } >"$scratch/widgets.cpp"
+block qt 1 >"$scratch/quick.cpp"
 cat >"$scratch/CMakeLists.txt" <<END
 cmake_minimum_required(VERSION 3.25)
 project(tool LANGUAGES CXX)
@@ -47,6 +48,12 @@ endforeach()
 target_link_libraries(window PRIVATE gpgp::sdl2)
 target_link_libraries(large PRIVATE gpgp::sdl2)
 target_link_libraries(widgets PRIVATE gpgp::imgui)
+if(TARGET gpgp::qt)
+  add_executable(quick quick.cpp)
+  target_compile_options(quick PRIVATE -Wall -Werror)
+  target_link_libraries(quick PRIVATE gpgp::qt)
+  add_dependencies(window quick)
+endif()
 END
 launcher=()
 if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi

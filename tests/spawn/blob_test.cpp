@@ -61,8 +61,8 @@ TEST(Blob, SaysWhatIsWrong) {
   };
   EXPECT_EQ(message([](auto& w) { w.clear(); }), "not a baked grammar: it is too short");
   EXPECT_EQ(message([](auto& w) { w[0] ^= 1; }), "not a baked grammar: it does not begin with \"gppg\"");
-  EXPECT_EQ(message([](auto& w) { w[1] = 99; }),
-            "the grammar was baked in format 99; this library reads format " + std::to_string(shader::kGraphVersion));
+  EXPECT_EQ(message([](auto& w) { w[1] = 99; }), "the grammar was baked in format 99; this library reads format " +
+                                                     std::to_string(shader::kGraphVersion) + ": bake it again");
   EXPECT_EQ(message([](auto& w) { w.pop_back(); }), "not a baked grammar: it was cut, or something follows it");
   EXPECT_EQ(message([](auto& w) { w[40] ^= 1; }), "not a baked grammar: its checksum is wrong");
   EXPECT_EQ(message([](auto& w) { w[shader::kHeaderSections + 3] += 1, sign(w); }),

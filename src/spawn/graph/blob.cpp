@@ -98,7 +98,8 @@ Result<Graph> load(std::span<const std::byte> bytes, std::pmr::memory_resource* 
   std::memcpy(words.data(), bytes.data(), bytes.size());
   if (words[kHeaderMagic] != kGraphMagic) return bad("it does not begin with \"gppg\"");
   if (words[kHeaderVersion] != kGraphVersion)
-    return makeError(GPGP_ERROR_INVALID_DATA, "the grammar was baked in format %u; this library reads format %u",
+    return makeError(GPGP_ERROR_INVALID_DATA,
+                     "the grammar was baked in format %u; this library reads format %u: bake it again",
                      words[kHeaderVersion], kGraphVersion);
   if (words[kHeaderWords] != words.size()) return bad("it was cut, or something follows it");
   if (words[kHeaderChecksum] != checksum(std::span(words).subspan(kHeaderChecked))) return bad("its checksum is wrong");

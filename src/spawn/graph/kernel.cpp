@@ -50,7 +50,12 @@ core::Result<std::pmr::vector<Kernel>> loadKernels(std::span<const std::byte> by
   for (std::span<const uint32_t> rest = words; !rest.empty();) {
     const size_t number = kernels.size();
     if (rest.size() < kHeader || rest[0] != kKernelMagic) return bad(number, "what follows is no kernel");
-    if (rest[1] != kKernelVersion) return bad(number, "it has a format that this library does not read");
+    if (rest[1] != kKernelVersion)
+      return makeError(
+          GPGP_ERROR_INVALID_DATA,
+          "kernel %zu of the baked grammar: it was made in format %u; this library reads format %u: bake the "
+          "grammar again",
+          number, rest[1], kKernelVersion);
     if (rest[2] <= kHeader || rest[2] > rest.size()) return bad(number, "it was cut");
     const auto own = rest.first(rest[2]);
     if (own[3] != checksum(own.subspan(kChecked))) return bad(number, "its checksum is wrong");

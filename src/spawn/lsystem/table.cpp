@@ -93,7 +93,8 @@ Result<Table> Table::load(std::span<const std::byte> bytes, std::pmr::memory_res
   std::memcpy(words.data(), bytes.data(), bytes.size());
   if (words[kLsysHeadMagic] != kLsysMagic) return fail("it does not begin with \"gpls\"");
   if (words[kLsysHeadVersion] != kLsysVersion)
-    return makeError(GPGP_ERROR_INVALID_DATA, "the L-system was compiled in format %u; this library reads format %u",
+    return makeError(GPGP_ERROR_INVALID_DATA,
+                     "the L-system was compiled in format %u; this library reads format %u: compile it again",
                      words[kLsysHeadVersion], kLsysVersion);
   if (words[kLsysHeadWords] != words.size()) return fail("it was cut, or something follows it");
   if (words[kLsysHeadChecksum] != checksumOf(std::span(words).subspan(kLsysHeadIterations)))

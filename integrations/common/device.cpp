@@ -1,13 +1,13 @@
 // Instance, GPU, device, frames in flight. What gpgp could use is asked for with gpgpGetRequirements before the device
 // is made, and enabled; no line of this needs a window.
-#include "gpgp_sdl2.hpp"
+#include "gpgp_device.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
 
-namespace gpgp::sdl2 {
+namespace gpgp::integration {
 
 void check(VkResult result, const char* what) {
   if (result < 0) throw std::runtime_error(std::string(what) + " failed with VkResult " + std::to_string(result));
@@ -226,4 +226,4 @@ void Frames::finish() {
   number_ = {number_.current + 1, number_.current};
 }
 
-} // namespace gpgp::sdl2
+} // namespace gpgp::integration
