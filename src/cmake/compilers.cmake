@@ -22,11 +22,7 @@ if(MINGW)
     -Wa,-mbig-obj) # tests have more sections than the usual form holds
 endif()
 if(GPGP_SANITIZE)
-  set(GPGP_SANITIZERS -fsanitize=address,undefined)
-  if(GPGP_SANITIZE STREQUAL "thread")
-    set(GPGP_SANITIZERS -fsanitize=thread)
-  endif()
-  target_compile_options(gpgp_build INTERFACE ${GPGP_SANITIZERS} -fno-omit-frame-pointer
-    $<$<NOT:$<STREQUAL:${GPGP_SANITIZE},thread>>:-fno-sanitize-recover=undefined>)
-  target_link_options(gpgp_build INTERFACE ${GPGP_SANITIZERS})
+  target_compile_options(gpgp_build INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined
+    -fno-omit-frame-pointer)
+  target_link_options(gpgp_build INTERFACE -fsanitize=address,undefined)
 endif()
