@@ -355,8 +355,10 @@ typedef struct GpgpContextCreateInfo {
   uint32_t maxRecordingsPerFrame; /**< Recordings per frame, for each recorder. At most 4096. 0: 16. */
   VkDeviceSize uploadRingBytes;   /**< Staging memory for gpgpRecordUpload, for all frames together. 0: 8 MiB. */
   VkPipelineCache pipelineCache;  /**< The engine's cache for all pipelines, or VK_NULL_HANDLE for one of gpgp's own. */
-  const void* pipelineCacheData;  /**< Optional. Initial data of gpgp's own cache, from gpgpGetPipelineCacheData. */
-  size_t pipelineCacheSize;       /**< Bytes of pipelineCacheData. */
+  /** Optional. Initial data of gpgp's own cache, from gpgpGetPipelineCacheData. Data of another device or driver is
+   *  ignored, with an INFO message. */
+  const void* pipelineCacheData;
+  size_t pipelineCacheSize;               /**< Bytes of pipelineCacheData. */
   const GpgpHostAllocator* hostAllocator; /**< NULL: the C++ heap. The struct is copied. */
   const GpgpGpuAllocator* gpuAllocator;   /**< NULL: blocks of gpgp's own. The struct is copied. */
   const GpgpJobSystem* jobSystem;         /**< NULL: all work runs on the calling thread. The struct is copied. */

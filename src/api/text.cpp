@@ -20,10 +20,22 @@ struct ShaperHandle {
   std::shared_ptr<Shaper> shaper;
 };
 
+/// Who gets the message of a call; needs no memory, which may be what is missing.
+struct Receiver {
+  GpgpMessageFn messageFn = nullptr;
+  void* userData = nullptr;
+  const char* label = "";
+  Receiver() = default;
+  Receiver(const Messages* m) {
+    if (m) messageFn = m->function, userData = m->userData, label = m->label.c_str();
+  }
+};
+
 /// Runs body() -> Result<void>; errors become a message and a result, nothing is thrown past the ABI.
-template <class Body> GpgpResult guarded(const char* function, const Messages* messages, Body&& body) noexcept {
+template <class Body> GpgpResult guarded(const char* function, const Receiver& to, Body&& body) noexcept {
   const auto finish = [&](const core::Error& error) {
-    if (error.code < 0 && messages) messages->send(GPGP_SEVERITY_ERROR, error.code, function, error.text);
+    const GpgpMessage message{GPGP_SEVERITY_ERROR, error.code, function, to.label, error.text};
+    if (error.code < 0 && to.messageFn) to.messageFn(to.userData, &message);
     return error.code;
   };
   try {
@@ -95,9 +107,13 @@ Result<void> checkStyle(const GpgpTextStyle& style, const char* name) {
 } // namespace
 
 GpgpResult GPGP_CALL gpgpCreateFont(const GpgpFontCreateInfo* info, GpgpFont* font) {
-  const bool typed = info && info->sType == GPGP_STRUCTURE_FONT_CREATE_INFO;
-  const Messages messages = typed ? messagesOf(*info) : Messages{};
-  return guarded("gpgpCreateFont", &messages, [&]() -> Result<void> {
+  Receiver receiver;
+  if (info && info->sType == GPGP_STRUCTURE_FONT_CREATE_INFO) {
+    receiver.messageFn = info->messageFn;
+    receiver.userData = info->messageUserData;
+    receiver.label = info->label ? info->label : info->filePath ? info->filePath : "";
+  }
+  return guarded("gpgpCreateFont", receiver, [&]() -> Result<void> {
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_FONT_CREATE_INFO, "info"); !ok) return ok;
     if (!font) return invalid("font is NULL");
     if ((info->data != nullptr) + (info->filePath != nullptr) != 1)
@@ -179,10 +195,13 @@ GpgpResult GPGP_CALL gpgpGetGlyphClosure(GpgpFont handle, const GpgpCharacterRan
 }
 
 GpgpResult GPGP_CALL gpgpCreateShaper(const GpgpShaperCreateInfo* info, GpgpShaper* shaper) {
-  const bool typed = info && info->sType == GPGP_STRUCTURE_SHAPER_CREATE_INFO;
-  const Messages messages{typed ? info->messageFn : nullptr, typed ? info->messageUserData : nullptr,
-                          typed && info->label ? info->label : ""};
-  return guarded("gpgpCreateShaper", &messages, [&]() -> Result<void> {
+  Receiver receiver;
+  if (info && info->sType == GPGP_STRUCTURE_SHAPER_CREATE_INFO) {
+    receiver.messageFn = info->messageFn;
+    receiver.userData = info->messageUserData;
+    receiver.label = info->label ? info->label : "";
+  }
+  return guarded("gpgpCreateShaper", receiver, [&]() -> Result<void> {
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_SHAPER_CREATE_INFO, "info"); !ok) return ok;
     if (!shaper) return invalid("shaper is NULL");
     auto made = Shaper::create(*info);

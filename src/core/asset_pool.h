@@ -4,7 +4,7 @@
 
 namespace gpgp::core {
 
-/// Any thread may use it, but never while it records.
+/// Any thread may use it, but never while it records. Only a thread that needs a new buffer waits while one is made.
 class AssetPool {
 public:
   struct Place {
@@ -30,9 +30,14 @@ private:
     std::pmr::vector<Range> used; // by offset
   };
 
+  /// A place in one of the blocks. bytes: all that blocks for the service's assets of that size hold.
+  std::optional<Place> place(GpgpService service, bool small, VkDeviceSize size, VkDeviceSize& bytes);
+  Result<Buffer> makeBuffer(GpgpService service, VkDeviceSize size, VkDeviceSize wanted);
+
   const Device& device_;
   GpuMemory& memory_;
-  std::mutex mutex_; // guards what is below
+  std::mutex growing_; // held while a buffer is made; taken first
+  std::mutex mutex_;   // guards what is below, and is held briefly
   std::pmr::vector<Block> blocks_;
 };
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 
 namespace gpgp::core {
 
@@ -15,6 +16,20 @@ namespace {
 void destroyObject(Object* object) {
   const PmrDelete deleter = object->deleter;
   deleter(object);
+}
+
+/// Whether data begins as a cache of this device and driver does. Drivers must find out for themselves, but some do not
+/// survive what is cut or another's.
+bool isCacheOf(const VkPhysicalDeviceProperties& device, const void* data, size_t size) {
+  struct {
+    uint32_t size, version, vendor, device;
+    uint8_t uuid[VK_UUID_SIZE];
+  } header; // VkPipelineCacheHeaderVersionOne
+  if (size < sizeof header) return false;
+  std::memcpy(&header, data, sizeof header);
+  return header.size >= sizeof header && header.size <= size &&
+         header.version == VK_PIPELINE_CACHE_HEADER_VERSION_ONE && header.vendor == device.vendorID &&
+         header.device == device.deviceID && std::memcmp(header.uuid, device.pipelineCacheUUID, VK_UUID_SIZE) == 0;
 }
 } // namespace
 
@@ -110,8 +125,15 @@ Result<void> Context::initialise(const GpgpContextCreateInfo& info) {
     pipelineCache = info.pipelineCache;
   } else {
     VkPipelineCacheCreateInfo cacheInfo{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
-    cacheInfo.initialDataSize = info.pipelineCacheSize;
-    cacheInfo.pInitialData = info.pipelineCacheData;
+    if (info.pipelineCacheSize && info.pipelineCacheData) {
+      if (isCacheOf(properties.properties, info.pipelineCacheData, info.pipelineCacheSize)) {
+        cacheInfo.initialDataSize = info.pipelineCacheSize;
+        cacheInfo.pInitialData = info.pipelineCacheData;
+      } else {
+        message(GPGP_SEVERITY_INFO, GPGP_ERROR_INVALID_DATA, "gpgpCreateContext", label.text,
+                "pipelineCacheData is cut, or of another device or driver; the cache begins empty");
+      }
+    }
     const VkResult result = device.vk.CreatePipelineCache(device.device, &cacheInfo, nullptr, &pipelineCache);
     if (result != VK_SUCCESS) return vulkanError(result, "vkCreatePipelineCache");
     ownsPipelineCache_ = true;

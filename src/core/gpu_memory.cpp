@@ -15,12 +15,13 @@ VkDeviceSize alignUp(VkDeviceSize value, VkDeviceSize alignment) {
 } // namespace
 
 GpuMemory::GpuMemory(const Device& device, HostMemory& host, const GpgpGpuAllocator* callbacks)
-    : device_(device), host_(host), blocks_(&host) {
+    : device_(device), host_(host), blocks_(&host), givenBack_(&host) {
   if (callbacks) callbacks_ = *callbacks;
   device_.vki.GetPhysicalDeviceMemoryProperties(device_.physicalDevice, &properties_);
 }
 
 GpuMemory::~GpuMemory() {
+  freeGivenBack();
   for (const Block& block : blocks_) device_.vk.FreeMemory(device_.device, block.memory, nullptr);
 }
 
@@ -45,46 +46,73 @@ Result<uint32_t> GpuMemory::chooseType(const GpgpGpuAllocationRequest& request) 
   return makeError(GPGP_ERROR_OUT_OF_DEVICE_MEMORY, "no memory type of the device suits %s", request.label);
 }
 
-Result<GpgpGpuAllocation> GpuMemory::allocate(const GpgpGpuAllocationRequest& request) {
-  const std::lock_guard lock(mutex_);
-  const VkDeviceSize size = request.requirements.size;
-  if (callbacks_.allocate) {
-    GpgpGpuAllocation allocation{};
-    const VkResult result = callbacks_.allocate(callbacks_.userData, &request, &allocation);
-    if (result != VK_SUCCESS) return vulkanError(result, "the engine's GPU allocator");
-    if ((request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) && !allocation.mapped) {
-      callbacks_.free(callbacks_.userData, &allocation);
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                       "the engine's GPU allocator returned host-visible memory that is "
-                       "not mapped, for %s",
-                       request.label);
-    }
-    return allocation;
+/// The engine's callbacks never overlap, and a frame does not wait for them: what it frees meanwhile is given back
+/// here.
+Result<GpgpGpuAllocation> GpuMemory::allocateFromEngine(const GpgpGpuAllocationRequest& request) {
+  const std::lock_guard growing(growing_);
+  freeGivenBack();
+  {
+    const std::lock_guard lock(mutex_);
+    if (givenBack_.capacity() <= engineAllocations_) givenBack_.reserve(2 * engineAllocations_ + 16);
   }
-  const auto type = chooseType(request);
-  if (!type) return type.error();
+  GpgpGpuAllocation allocation{};
+  const VkResult result = callbacks_.allocate(callbacks_.userData, &request, &allocation);
+  if (result != VK_SUCCESS) return vulkanError(result, "the engine's GPU allocator");
+  if ((request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) && !allocation.mapped) {
+    callbacks_.free(callbacks_.userData, &allocation);
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                     "the engine's GPU allocator returned host-visible memory that is "
+                     "not mapped, for %s",
+                     request.label);
+  }
+  const std::lock_guard lock(mutex_);
+  ++engineAllocations_;
+  return allocation;
+}
 
-  VkDeviceSize typeBytes = 0;
+void GpuMemory::freeGivenBack() {
+  for (;;) {
+    GpgpGpuAllocation allocation;
+    {
+      const std::lock_guard lock(mutex_);
+      if (givenBack_.empty()) return;
+      allocation = givenBack_.back();
+      givenBack_.pop_back();
+      --engineAllocations_;
+    }
+    callbacks_.free(callbacks_.userData, &allocation);
+  }
+}
+
+/// A place in one of the blocks.
+std::optional<GpgpGpuAllocation> GpuMemory::place(uint32_t type, const VkMemoryRequirements& requirements) {
   for (Block& block : blocks_) {
-    if (block.type != *type) continue;
-    typeBytes += block.size;
+    if (block.type != type) continue;
     VkDeviceSize start = 0;
     auto at = block.used.begin();
-    for (; at != block.used.end() && start + size > at->offset; ++at)
-      start = alignUp(at->offset + at->size, request.requirements.alignment);
-    if (at == block.used.end() && start + size > block.size) continue;
-    block.used.insert(at, Range{start, size});
+    for (; at != block.used.end() && start + requirements.size > at->offset; ++at)
+      start = alignUp(at->offset + at->size, requirements.alignment);
+    if (at == block.used.end() && start + requirements.size > block.size) continue;
+    block.used.insert(at, Range{start, requirements.size});
     return GpgpGpuAllocation{block.memory, start, block.mapped ? block.mapped + start : nullptr, nullptr};
   }
+  return std::nullopt;
+}
 
-  const VkDeviceSize blockSize = std::max(size, typeBytes ? kBlockBytes : kSmallBlockBytes);
-  Block block{VK_NULL_HANDLE, blockSize, *type, nullptr, std::pmr::vector<Range>(&host_)};
+/// A block that is used from its beginning by `size` bytes.
+Result<GpuMemory::Block> GpuMemory::makeBlock(uint32_t type, VkDeviceSize size) {
+  Block block{VK_NULL_HANDLE, size, type, nullptr, std::pmr::vector<Range>(&host_)};
+  {
+    const std::lock_guard lock(mutex_);
+    const bool first = std::none_of(blocks_.begin(), blocks_.end(), [&](const Block& b) { return b.type == type; });
+    block.size = std::max(size, first ? kSmallBlockBytes : kBlockBytes);
+    blocks_.reserve(blocks_.size() + 1); // what can throw comes before what must be undone; only growing adds blocks
+  }
   block.used.push_back({0, size});
-  blocks_.reserve(blocks_.size() + 1); // what can throw comes before what must be undone
-  const VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, blockSize, *type};
+  const VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, block.size, type};
   VkResult result = device_.vk.AllocateMemory(device_.device, &info, nullptr, &block.memory);
   if (result != VK_SUCCESS) return vulkanError(result, "vkAllocateMemory");
-  if (properties_.memoryTypes[*type].propertyFlags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) {
+  if (properties_.memoryTypes[type].propertyFlags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) {
     void* mapped = nullptr;
     result = device_.vk.MapMemory(device_.device, block.memory, 0, VK_WHOLE_SIZE, 0, &mapped);
     if (result != VK_SUCCESS) {
@@ -93,23 +121,48 @@ Result<GpgpGpuAllocation> GpuMemory::allocate(const GpgpGpuAllocationRequest& re
     }
     block.mapped = static_cast<char*>(mapped);
   }
-  const GpgpGpuAllocation allocation{block.memory, 0, block.mapped, nullptr};
-  blocks_.push_back(std::move(block));
-  return allocation;
+  return block;
+}
+
+Result<GpgpGpuAllocation> GpuMemory::allocate(const GpgpGpuAllocationRequest& request) {
+  if (callbacks_.allocate) return allocateFromEngine(request);
+  const auto type = chooseType(request);
+  if (!type) return type.error();
+  const auto placed = [&] {
+    const std::lock_guard lock(mutex_);
+    return place(*type, request.requirements);
+  };
+  if (const auto found = placed()) return *found;
+  const std::lock_guard growing(growing_);
+  if (const auto found = placed()) return *found; // another thread has made a block meanwhile
+  auto block = makeBlock(*type, request.requirements.size);
+  if (!block) return block.error();
+  const std::lock_guard lock(mutex_);
+  blocks_.push_back(std::move(*block));
+  return GpgpGpuAllocation{blocks_.back().memory, 0, blocks_.back().mapped, nullptr};
 }
 
 void GpuMemory::free(const GpgpGpuAllocation& allocation) {
-  const std::lock_guard lock(mutex_);
-  if (callbacks_.allocate) return callbacks_.free(callbacks_.userData, &allocation);
-  for (auto block = blocks_.begin(); block != blocks_.end(); ++block) {
-    if (block->memory != allocation.memory) continue;
-    std::erase_if(block->used, [&](const Range& range) { return range.offset == allocation.offset; });
-    if (block->used.empty()) {
-      device_.vk.FreeMemory(device_.device, block->memory, nullptr);
-      blocks_.erase(block);
+  if (callbacks_.allocate) {
+    {
+      const std::lock_guard lock(mutex_);
+      givenBack_.push_back(allocation); // into reserved room
     }
+    if (const std::unique_lock growing(growing_, std::try_to_lock); growing) freeGivenBack();
     return;
   }
+  VkDeviceMemory unused = VK_NULL_HANDLE;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto block =
+        std::find_if(blocks_.begin(), blocks_.end(), [&](const Block& b) { return b.memory == allocation.memory; });
+    if (block == blocks_.end()) return;
+    std::erase_if(block->used, [&](const Range& range) { return range.offset == allocation.offset; });
+    if (!block->used.empty()) return;
+    unused = block->memory;
+    blocks_.erase(block);
+  }
+  device_.vk.FreeMemory(device_.device, unused, nullptr);
 }
 
 Buffer& Buffer::operator=(Buffer&& other) noexcept {

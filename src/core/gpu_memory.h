@@ -1,12 +1,15 @@
 // Device memory of a context: the engine's callbacks, or blocks of our own with first-fit sub-allocation.
 //
 // Only buffers are allocated, so bufferImageGranularity does not matter. Any thread may use it, but never while it
-// records; calls wait for each other, the engine's callbacks included. Buffer is the only owner of an allocation.
+// records. One thread at a time asks the device or the engine for memory. Others wait for that only where they need
+// more than there is: the frame's thread, which frees and counts, never does. Buffer is the only owner of an
+// allocation.
 #pragma once
 #include "core/host_memory.h"
 #include "core/vulkan_table.h"
 
 #include <mutex>
+#include <optional>
 #include <vector>
 
 namespace gpgp::core {
@@ -40,13 +43,20 @@ private:
     std::pmr::vector<Range> used; // sorted by offset
   };
   Result<uint32_t> chooseType(const GpgpGpuAllocationRequest& request) const;
+  Result<GpgpGpuAllocation> allocateFromEngine(const GpgpGpuAllocationRequest& request);
+  std::optional<GpgpGpuAllocation> place(uint32_t type, const VkMemoryRequirements& requirements);
+  Result<Block> makeBlock(uint32_t type, VkDeviceSize size);
+  void freeGivenBack();
 
   const Device& device_;
   HostMemory& host_;
-  mutable std::mutex mutex_; // guards what is below
+  std::mutex growing_;       // held during calls of the engine's callbacks, and while a block is made; taken first
+  mutable std::mutex mutex_; // guards what is below, and is held briefly
   GpgpGpuAllocator callbacks_{};
   VkPhysicalDeviceMemoryProperties properties_{};
   std::pmr::vector<Block> blocks_;
+  size_t engineAllocations_ = 0;                  // that live; room for all of them is reserved in the next
+  std::pmr::vector<GpgpGpuAllocation> givenBack_; // of the engine's: to be freed by who holds growing_
   GpgpServiceMemory services_[GPGP_SERVICE_COUNT] = {};
 };
 

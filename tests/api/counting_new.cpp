@@ -9,11 +9,29 @@
 
 namespace {
 std::atomic<uint64_t> calls{0};
+std::atomic<int64_t> living{0};
 thread_local int uncounted = 0;
+thread_local uint64_t tried = 0, failFrom = UINT64_MAX, failTo = 0;
 } // namespace
 
 namespace gpgp::test {
 uint64_t countingNewCalls() { return calls; }
+int64_t livingNews() { return living; }
+void failAllocations(uint64_t nth, bool onwards) {
+  tried = 0;
+  failFrom = nth ? nth : UINT64_MAX;
+  failTo = nth && onwards ? UINT64_MAX : nth;
+}
+bool allocationFails() {
+  const uint64_t number = ++tried;
+  return !uncounted && number >= failFrom && number <= failTo;
+}
+uint64_t allocationsTried() { return tried; }
+#ifdef __SANITIZE_ADDRESS__
+bool canFailNew() { return false; }
+#else
+bool canFailNew() { return true; }
+#endif
 UncountedNew::UncountedNew() { ++uncounted; }
 UncountedNew::~UncountedNew() { --uncounted; }
 } // namespace gpgp::test
@@ -22,7 +40,11 @@ UncountedNew::~UncountedNew() { --uncounted; }
 #ifndef __SANITIZE_ADDRESS__
 namespace {
 void* allocate(std::size_t size, std::size_t alignment) {
-  if (!uncounted) ++calls;
+  if (!uncounted) {
+    ++calls;
+    if (gpgp::test::allocationFails()) return nullptr;
+  }
+  ++living;
   return gpgp::test::allocateAligned(size, alignment);
 }
 } // namespace
@@ -38,8 +60,11 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
 void* operator new(std::size_t size, std::align_val_t alignment, const std::nothrow_t&) noexcept {
   return allocate(size, static_cast<std::size_t>(alignment));
 }
-void operator delete(void* memory) noexcept { gpgp::test::freeAligned(memory); }
-void operator delete(void* memory, std::size_t) noexcept { gpgp::test::freeAligned(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { gpgp::test::freeAligned(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { gpgp::test::freeAligned(memory); }
+void operator delete(void* memory) noexcept {
+  if (memory) --living;
+  gpgp::test::freeAligned(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept { operator delete(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { operator delete(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { operator delete(memory); }
 #endif

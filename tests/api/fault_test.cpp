@@ -193,6 +193,12 @@ TEST_P(FaultTest, EveryVulkanObject) {
       [&] { proxy.failCreation(0, VK_SUCCESS); });
 }
 
+TEST_P(FaultTest, EveryCallThatLosesTheDevice) {
+  sweep(
+      GPGP_ERROR_DEVICE_LOST, false, [&](uint32_t n) { proxy.failCreation(n, VK_ERROR_DEVICE_LOST); },
+      [&] { proxy.failCreation(0, VK_SUCCESS); });
+}
+
 INSTANTIATE_TEST_SUITE_P(Services, FaultTest, testing::ValuesIn(scenarioNames()),
                          [](const auto& service) { return service.param; });
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(FaultTest);

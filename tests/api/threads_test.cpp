@@ -1,4 +1,5 @@
-// Assets are created on loading threads while the frames of the same context go on.
+// Assets are created on loading threads while the frames of the same context go on, and while they are recorded.
+// tests/sanitizers/tsan.sh runs this with ThreadSanitizer.
 #include "scenarios.h"
 
 #include <gpgp/gpgp.h>
@@ -32,6 +33,48 @@ GpgpResult createGlyphSet(GpgpContext context, uint32_t number, GpgpAsset* asset
   info.maxBytes = 4096;
   return gpgpCreateGlyphSet(context, &info, asset);
 }
+#if defined(GPGP_WITH_COMPILER)
+/// A frame of an animation, read and evaluated on the loading thread.
+GpgpResult createLottieFrame(GpgpContext context, uint32_t number, GpgpAsset* asset) {
+  static constexpr char kText[] =
+      R"({"v":"5.5.0","fr":30,"ip":0,"op":60,"w":100,"h":80,"layers":[{"ty":4,"ip":0,"op":60,"st":0,"ks":{"r":{"a":1,
+      "k":[{"t":0,"s":[20],"o":{"x":0.3,"y":0},"i":{"x":0.6,"y":1}},{"t":60,"s":[90]}]}},"shapes":[{"ty":"gr","it":[
+      {"ty":"rc","p":{"k":[0,0]},"s":{"k":[40,30]},"r":{"k":5}},{"ty":"st","c":{"k":[1,0,0,1]},"o":{"k":100},"w":{"k":3}
+      },{"ty":"tr","p":{"k":[0,0]},"a":{"k":[0,0]},"s":{"k":[100,100]},"r":{"k":10},"o":{"k":100}}]}]}]})";
+  GpgpLottieSource source = GPGP_LOTTIE_SOURCE_INIT;
+  source.data = kText;
+  source.size = sizeof kText - 1;
+  GpgpLottie lottie = nullptr;
+  if (const GpgpResult result = gpgpCreateLottie(&source, &lottie); result != GPGP_SUCCESS) return result;
+  GpgpLottieFrame frame = GPGP_LOTTIE_FRAME_INIT;
+  GpgpResult result = gpgpEvaluateLottie(lottie, number % 60, &frame);
+  GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
+  info.paths = frame.paths;
+  info.pathCount = frame.pathCount;
+  info.groups = frame.groups;
+  info.groupCount = frame.groupCount;
+  if (result == GPGP_SUCCESS) result = gpgpCreateDrawing(context, &info, asset);
+  gpgpDestroyLottie(lottie);
+  return result;
+}
+#endif
+#endif
+#if defined(GPGP_WITH_SPAWN) && defined(GPGP_WITH_COMPILER)
+GpgpResult createGrammar(GpgpContext context, uint32_t, GpgpAsset* asset) {
+  static constexpr char kText[] = "axiom Box A; terminal Cube (1, 0); A = SubDiv(X) { -1: Cube | -1: Cube };";
+  GpgpGrammarSource source = GPGP_GRAMMAR_SOURCE_INIT;
+  source.name = "halves.pga";
+  source.text = kText;
+  source.size = sizeof kText - 1;
+  GpgpBlob blob{};
+  if (const GpgpResult result = gpgpCompileGrammar(&source, &blob); result != GPGP_SUCCESS) return result;
+  GpgpGrammarCreateInfo info = GPGP_GRAMMAR_CREATE_INFO_INIT;
+  info.data = blob.data;
+  info.size = blob.size;
+  const GpgpResult result = gpgpCreateGrammar(context, &info, asset);
+  gpgpFreeBlob(&blob);
+  return result;
+}
 #endif
 #if defined(GPGP_WITH_VISIBILITY)
 GpgpResult createGeometrySet(GpgpContext context, uint32_t number, GpgpAsset* asset) {
@@ -48,6 +91,12 @@ constexpr Create kCreates[] = {
 #if defined(GPGP_WITH_VECTOR)
     createDrawing,
     createGlyphSet,
+#if defined(GPGP_WITH_COMPILER)
+    createLottieFrame,
+#endif
+#endif
+#if defined(GPGP_WITH_SPAWN) && defined(GPGP_WITH_COMPILER)
+    createGrammar,
 #endif
 #if defined(GPGP_WITH_VISIBILITY)
     createGeometrySet,
@@ -142,5 +191,120 @@ TEST(Threads, AssetsAreCreatedBesideFrames) {
     EXPECT_EQ(service.deviceBytes, 0u);
     EXPECT_EQ(service.pendingBytes, 0u);
   }
+}
+
+// Each service's job is recorded, submitted and reported frame by frame while loading threads create and, on the
+// frames' thread, assets go: what is recorded stays the same.
+TEST(Threads, FramesAreRecordedBesideLoaders) {
+  Frames beside;
+  std::vector<std::unique_ptr<Scenario>> scenarios;
+  std::vector<std::vector<uint32_t>> wanted;
+  for (const std::string& name : scenarioNames()) {
+    auto made = makeScenario(name, beside.device);
+    ASSERT_EQ(made->createAsset(beside.context), GPGP_SUCCESS);
+    ASSERT_EQ(made->createRecorder(beside.context, {name.c_str(), beside.device.graphics().family, 0, VK_FALSE}),
+              GPGP_SUCCESS);
+    ASSERT_EQ(made->createView(beside.context), GPGP_SUCCESS);
+    ASSERT_EQ(made->prewarm(), GPGP_SUCCESS);
+    scenarios.push_back(std::move(made));
+  }
+  while (beside.next() > 0) {}
+  const auto frame = [&] {
+    beside.next();
+    beside.device.submitAndWait([&](VkCommandBuffer cmd) {
+      for (const auto& scenario : scenarios) EXPECT_EQ(scenario->record(cmd, beside.frame, {}), GPGP_SUCCESS);
+    });
+    std::vector<std::vector<uint32_t>> results;
+    for (const auto& scenario : scenarios) {
+      results.push_back(scenario->results());
+      GpgpReportHeader header{};
+      bool meaningful = false;
+      (void)scenario->takeReport(header, meaningful);
+    }
+    return results;
+  };
+  wanted = frame();
+
+  std::atomic<uint32_t> ended{0};
+  std::vector<std::vector<GpgpAsset>> assets(kLoaders);
+  std::vector<std::thread> threads;
+  for (uint32_t loader = 0; loader < kLoaders; ++loader)
+    threads.emplace_back([&, loader] {
+      assets[loader] = load(beside.context, loader);
+      ++ended;
+    });
+  uint32_t frames = 0;
+  do {
+    GpgpAsset own = nullptr;
+    EXPECT_EQ(kCreates[0](beside.context, 0, &own), GPGP_SUCCESS);
+    EXPECT_EQ(frame(), wanted) << "frame " << frames;
+    gpgpDestroyAsset(own);
+    ++frames;
+  } while (ended < kLoaders || frames < 3);
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& made : assets)
+    for (const GpgpAsset asset : made) gpgpDestroyAsset(asset);
+  EXPECT_EQ(frame(), wanted);
+  for (const auto& scenario : scenarios) scenario->destroy();
+}
+
+// What the frames' thread frees does not wait for memory that a loading thread asks the engine for.
+TEST(Threads, FreeingDoesNotWaitForAllocations) {
+  if (std::size(kCreates) == 0) GTEST_SKIP() << "built without vector and visibility";
+  struct Slow {
+    host::HeadlessDevice& device = sharedDevice();
+    std::atomic<bool> blocks{false}, entered{false};
+    std::atomic<int> living{0}, overlapping{0};
+  } slow;
+  GpgpGpuAllocator gpu{};
+  gpu.userData = &slow;
+  gpu.allocate = [](void* user, const GpgpGpuAllocationRequest* request, GpgpGpuAllocation* allocation) -> VkResult {
+    Slow& self = *static_cast<Slow*>(user);
+    if (++self.overlapping != 1) ADD_FAILURE() << "calls overlap";
+    self.entered = true;
+    while (self.blocks) std::this_thread::yield();
+    const VkMemoryAllocateInfo info{
+        VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, request->requirements.size,
+        self.device.memoryType(request->requirements.memoryTypeBits, request->required, request->preferred)};
+    const VolkDeviceTable& vk = self.device.vk();
+    VkResult result = vk.vkAllocateMemory(self.device.device(), &info, nullptr, &allocation->memory);
+    allocation->mapped = nullptr;
+    if (result == VK_SUCCESS && (request->required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT))
+      result = vk.vkMapMemory(self.device.device(), allocation->memory, 0, VK_WHOLE_SIZE, 0, &allocation->mapped);
+    self.living += result == VK_SUCCESS;
+    --self.overlapping;
+    return result;
+  };
+  gpu.free = [](void* user, const GpgpGpuAllocation* allocation) {
+    Slow& self = *static_cast<Slow*>(user);
+    if (++self.overlapping != 1) ADD_FAILURE() << "calls overlap";
+    self.device.vk().vkFreeMemory(self.device.device(), allocation->memory, nullptr);
+    --self.living;
+    --self.overlapping;
+  };
+  GpgpContextCreateInfo info = slow.device.contextCreateInfo();
+  info.gpuAllocator = &gpu;
+  GpgpContext context = nullptr;
+  ASSERT_EQ(gpgpCreateContext(&info, &context), GPGP_SUCCESS);
+  GpgpFrame frame{1, 0};
+  GpgpAsset own = nullptr, others = nullptr;
+  ASSERT_EQ(gpgpAdvance(context, &frame), GPGP_SUCCESS);
+  ASSERT_EQ(kCreates[std::size(kCreates) - 1](context, 0, &own), GPGP_SUCCESS);
+  slow.blocks = true;
+  slow.entered = false;
+  std::thread loader([&] { EXPECT_EQ(kCreates[0](context, 0, &others), GPGP_SUCCESS); });
+  while (!slow.entered) std::this_thread::yield();
+  gpgpDestroyAsset(own); // a test that hangs here is one that failed
+  for (int i = 0; i < 3; ++i) {
+    frame = {frame.current + 1, frame.current};
+    EXPECT_EQ(gpgpAdvance(context, &frame), GPGP_SUCCESS);
+  }
+  GpgpMemoryReport report = GPGP_MEMORY_REPORT_INIT;
+  EXPECT_EQ(gpgpGetMemoryReport(context, &report), GPGP_SUCCESS);
+  slow.blocks = false;
+  loader.join();
+  gpgpDestroyAsset(others);
+  gpgpDestroyContext(context);
+  EXPECT_EQ(slow.living, 0);
 }
 } // namespace

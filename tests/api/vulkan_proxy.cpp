@@ -35,8 +35,9 @@ void describe(LoggedCall& call, VkCommandBuffer, VkPipelineStageFlags source, Vk
 }
 
 bool creates(const char* name) {
-  return std::strncmp(name, "vkCreate", 8) == 0 || std::strncmp(name, "vkAllocate", 10) == 0 ||
-         std::strncmp(name, "vkBind", 6) == 0 || std::strncmp(name, "vkMap", 5) == 0;
+  return std::strcmp(name, "vkGetPipelineCacheData") == 0 || std::strncmp(name, "vkCreate", 8) == 0 ||
+         std::strncmp(name, "vkAllocate", 10) == 0 || std::strncmp(name, "vkBind", 6) == 0 ||
+         std::strncmp(name, "vkMap", 5) == 0;
 }
 
 template <class Tag, class Function> struct Wrap;

@@ -30,8 +30,8 @@ public:
   static PFN_vkGetInstanceProcAddr getInstanceProcAddr();
 
   void clear() { calls.clear(); }
-  /// Lets the n-th call (from 1) from now on that creates or allocates, and all after it, fail with the result; 0:
-  /// none.
+  /// Lets the n-th call (from 1) from now on that creates, allocates or can otherwise fail, and all after it, fail with
+  /// the result; 0: none.
   void failCreation(uint32_t nth, VkResult with) { failAt = nth, failWith = with, creations = 0; }
 
   std::vector<LoggedCall> calls;

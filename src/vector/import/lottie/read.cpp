@@ -15,29 +15,23 @@ constexpr const char* kBlendNames[] = {
     "hard light", "soft light", "difference", "exclusion", "hue",    "saturation", "color",       "luminosity"};
 static_assert(std::size(kBlendNames) == GPGP_BLEND_PLUS_LIGHTER && GPGP_BLEND_LUMINOSITY == 15);
 
-/// Builds the document, and stops where it becomes too deep or too large.
 Json parse(std::string_view text, const ReadLimits& limits) {
-  size_t values = 0;
-  const auto look = [&](int depth, Json::parse_event_t event, Json&) {
-    if (depth > static_cast<int>(limits.depth))
-      throw Refusal{nullptr, "lists and objects are more than " + std::to_string(limits.depth) + " deep"};
-    if (event == Json::parse_event_t::value || event == Json::parse_event_t::array_start ||
-        event == Json::parse_event_t::object_start)
-      if (++values > limits.values)
-        throw Refusal{nullptr, "the file has more than " + std::to_string(limits.values) + " values"};
-    return true;
-  };
-  try {
-    return Json::parse(text.begin(), text.end(), look);
-  } catch (const Json::parse_error& failed) {
-    const size_t end = std::min(failed.byte ? failed.byte - 1 : 0, text.size());
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
-    const size_t newLine = text.substr(0, end).rfind('\n');
-    const size_t column = 1 + end - (newLine == text.npos ? 0 : newLine + 1);
-    throw Refusal{nullptr, std::to_string(line) + ":" + std::to_string(column) + ": not JSON"};
-  } catch (const Json::exception&) { // a number beyond what double holds
-    throw Refusal{nullptr, "the file has a number that is too large"};
+  Json root;
+  const JsonProblem problem = parseJson(text, limits.depth, limits.values, root);
+  switch (problem.kind) {
+  case JsonProblem::Kind::none: return root;
+  case JsonProblem::Kind::number: throw Refusal{nullptr, "the file has a number that is too large"};
+  case JsonProblem::Kind::depth:
+    throw Refusal{nullptr, "lists and objects are more than " + std::to_string(limits.depth) + " deep"};
+  case JsonProblem::Kind::count:
+    throw Refusal{nullptr, "the file has more than " + std::to_string(limits.values) + " values"};
+  case JsonProblem::Kind::syntax: break;
   }
+  const size_t end = std::min(problem.offset, text.size());
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
+  const size_t newLine = text.substr(0, end).rfind('\n');
+  const size_t column = 1 + end - (newLine == text.npos ? 0 : newLine + 1);
+  throw Refusal{nullptr, std::to_string(line) + ":" + std::to_string(column) + ": not JSON"};
 }
 
 class FileReader {
@@ -351,8 +345,6 @@ core::Result<Animation> readAnimation(std::span<const std::byte> bytes, const Ou
     const std::string place = refusal.where ? placeOf(root, refusal.where) : std::string();
     return core::makeError(GPGP_ERROR_INVALID_DATA, "%s%s%s", place.c_str(), place.empty() ? "" : ": ",
                            refusal.text.c_str());
-  } catch (const Json::exception&) { // a string that is no UTF-8, asked for as one
-    return core::makeError(GPGP_ERROR_INVALID_DATA, "the file is not valid");
   }
 }
 

@@ -11,14 +11,14 @@ std::string placeOf(const Json& root, const Json* value) {
       if (&node == value) return true;
       const size_t length = path.size();
       if (node.is_object()) {
-        for (auto it = node.begin(); it != node.end(); ++it) {
-          path += (path.empty() ? "" : ".") + it.key().substr(0, 40);
-          if (in(*it)) return true;
+        for (const Json::Member& member : node.members) {
+          path += (path.empty() ? "" : ".") + member.key.substr(0, 40);
+          if (in(member.value)) return true;
           path.resize(length);
         }
       } else if (node.is_array()) {
         for (size_t i = 0; i < node.size(); ++i) {
-          if (!node[i].is_structured() && &node[i] != value) continue;
+          if (!node[i].is_array() && !node[i].is_object() && &node[i] != value) continue;
           path += "[" + std::to_string(i) + "]";
           if (in(node[i])) return true;
           path.resize(length);

@@ -1,15 +1,13 @@
 // JSON values of a Lottie file, and where they stand in it.
 #pragma once
+#include "vector/import/lottie/json.h"
 #include "vector/import/lottie/read.h"
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 
 namespace gpgp::vector::lottie {
-
-using Json = nlohmann::json;
 
 /// Refuses the whole file. Thrown and caught inside of the reader only.
 struct Refusal {
@@ -20,14 +18,12 @@ struct Refusal {
 constexpr double kMaxNumber = 1e9;
 
 inline const Json* find(const Json& object, const char* key) {
-  if (!object.is_object()) return nullptr;
-  const auto found = object.find(key);
-  return found == object.end() || found->is_null() ? nullptr : &*found;
+  const Json* found = object.find(key);
+  return found && !found->is_null() ? found : nullptr;
 }
 /// Within +-1e9.
 inline double toNumber(const Json& value, double otherwise = 0) {
-  if (value.is_boolean()) return value.get<bool>() ? 1 : 0;
-  return value.is_number() ? std::clamp(value.get<double>(), -kMaxNumber, kMaxNumber) : otherwise;
+  return value.is_boolean() || value.is_number() ? std::clamp(value.number, -kMaxNumber, kMaxNumber) : otherwise;
 }
 inline double numberOf(const Json& object, const char* key, double otherwise = 0) {
   const Json* value = find(object, key);
@@ -38,7 +34,7 @@ inline int intOf(const Json& object, const char* key, int otherwise = 0) {
 }
 inline std::string stringOf(const Json& object, const char* key) {
   const Json* value = find(object, key);
-  return value && value->is_string() ? value->get<std::string>() : std::string();
+  return value && value->is_string() ? value->text : std::string();
 }
 inline const Json& listOf(const Json& object, const char* key) {
   static const Json kNone = Json::array();

@@ -86,13 +86,13 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
 GpgpResult GPGP_CALL gpgpCompileSvg(const GpgpSvgSource* source, GpgpBlob* blob) {
   if (!source || !blob) return GPGP_ERROR_INVALID_ARGUMENT;
   if (source->sType != GPGP_STRUCTURE_SVG_SOURCE || source->pNext) return GPGP_ERROR_INVALID_STRUCT;
-  Reporter reporter(source->messageFn, source->messageUserData, source->name);
   try {
+    Reporter reporter(source->messageFn, source->messageUserData, source->name);
     return compile(*source, *blob, reporter);
-  } catch (const std::bad_alloc&) {
-    reporter.error("out of memory", GPGP_ERROR_OUT_OF_HOST_MEMORY);
-  } catch (...) {
-    reporter.error("the importer failed", GPGP_ERROR_OUT_OF_HOST_MEMORY);
+  } catch (...) { // bad_alloc; nothing else is thrown. There may be no memory for a message's parts
+    const GpgpMessage message{GPGP_SEVERITY_ERROR, GPGP_ERROR_OUT_OF_HOST_MEMORY, "gpgpCompileSvg",
+                              source->name ? source->name : "", "out of memory"};
+    if (source->messageFn) source->messageFn(source->messageUserData, &message);
+    return GPGP_ERROR_OUT_OF_HOST_MEMORY;
   }
-  return GPGP_ERROR_OUT_OF_HOST_MEMORY;
 }
