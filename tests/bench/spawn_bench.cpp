@@ -25,6 +25,7 @@
 #include <mutex>
 #include <sstream>
 #include <thread>
+#include <tuple>
 
 namespace {
 using namespace gpgp;
@@ -36,7 +37,7 @@ struct Options {
   uint32_t exhaustive = 64;
   double share = 1, seconds = 0, tuning = TuneSettings().seconds;
   bool quick = false;
-  std::string device, keep;
+  std::string device, keep, published;
   std::vector<std::string> tables;
 
   bool wants(const std::string& table, const std::string& row = {}) const {
@@ -86,6 +87,7 @@ struct Case {
   uint32_t axioms = 0;
   std::array<float, 3> size{};
   float spacing = 0;
+  std::string folder = GPGP_SAMPLE_GRAMMARS;
 };
 
 std::vector<Case> readCases() {
@@ -100,13 +102,24 @@ std::vector<Case> readCases() {
   }
   return cases;
 }
+/// Those that were published with the 2016 paper, as far as they are in the folder.
+std::vector<Case> publishedCases(const std::string& folder) {
+  std::vector<Case> cases;
+  if (folder.empty()) return cases;
+  for (const Case& c :
+       {Case{"menger_sponge_3", 256, {27, 27, 27}, 40, folder}, Case{"3d_tree_4_3", 1, {16, 16, 16}, 20, folder},
+        Case{"3d_tree_8_3", 1, {16, 16, 16}, 20, folder}, Case{"mc_skyscraper", 512, {30, 90, 30}, 40, folder},
+        Case{"balcony", 256, {24, 34, 24}, 38, folder}, Case{"commercial", 256, {30, 45, 30}, 44, folder}})
+    if (std::filesystem::exists(folder + "/" + c.name + ".pga")) cases.push_back(c);
+  return cases;
+}
 const Case& caseOf(const std::vector<Case>& cases, const std::string& name) {
   for (const Case& c : cases)
     if (c.name == name) return c;
   throw Failure("cases.txt has no " + name);
 }
 std::vector<GpgpAxiom> axiomsOf(const Case& c, uint32_t count) { return axiomGrid(count, c.spacing, {c.size, 1}); }
-BakedGraph grammarOf(const Case& c) { return bakeGraph({GPGP_SAMPLE_GRAMMARS "/" + c.name + ".pga"}, {}); }
+BakedGraph grammarOf(const Case& c) { return bakeGraph({c.folder + "/" + c.name + ".pga"}, {}); }
 uint32_t shareOf(const Options& options, uint32_t axioms) {
   return std::max(1u, static_cast<uint32_t>(options.share * axioms));
 }
@@ -140,12 +153,12 @@ void compare(const spawn::Derivation& cpu, const GpgpSpawnReport& gpu, const std
 /// Kernels of one grammar, each made once: schedules that wait at the same nodes have the same one.
 class Kernels {
 public:
-  Kernels(const BakedGraph& grammar, spawn::KernelTarget target, bool matching = false)
-      : grammar_(grammar), target_(target), matching_(matching) {}
+  Kernels(const BakedGraph& grammar, const host::HeadlessDevice& device, bool matching = false)
+      : grammar_(grammar), device_(device), matching_(matching) {}
   /// Its number.
   size_t add(const spawn::Schedule& schedule) {
-    const auto [at, isNew] =
-        known_.try_emplace({schedule.waits, matching_ ? schedule.roots : spawn::Roots()}, schedules_.size());
+    const auto [at, isNew] = known_.try_emplace(
+        {schedule.waits, matching_ ? schedule.roots : spawn::Roots(), schedule.queues}, schedules_.size());
     if (isNew) schedules_.push_back(schedule);
     return at->second;
   }
@@ -155,8 +168,9 @@ public:
   /// As words behind the graph. Any thread.
   std::pmr::vector<uint32_t> compile(size_t kernel) const {
     const spawn::Schedule& schedule = schedules_[kernel];
-    const auto code = compileKernels(grammar_.graph, std::span(&schedule, 1), target_, matching_);
-    return kernelWords(grammar_, kernelInfo(schedule, target_), code[0]);
+    const auto code = compileKernels(grammar_.graph, std::span(&schedule, 1), device_, matching_);
+    const auto target = targetFor(device_, grammar_.graph, schedule.queues);
+    return kernelWords(grammar_, kernelInfo(schedule, target), code[0]);
   }
   /// What tells it from all others, of other grammars as well.
   std::string key(size_t kernel) const {
@@ -166,6 +180,7 @@ public:
     for (const bool waits : schedules_[kernel].waits) add(waits);
     if (matching_)
       for (const uint32_t root : schedules_[kernel].roots) add(root);
+    if (schedules_[kernel].queues == spawn::Queues::groups) add(1);
     char text[24];
     std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
     return text;
@@ -173,9 +188,9 @@ public:
 
 private:
   const BakedGraph& grammar_;
-  spawn::KernelTarget target_;
+  const host::HeadlessDevice& device_;
   bool matching_;
-  std::map<std::pair<std::vector<bool>, spawn::Roots>, size_t> known_;
+  std::map<std::tuple<std::vector<bool>, spawn::Roots, spawn::Queues>, size_t> known_;
   std::vector<spawn::Schedule> schedules_;
 };
 
@@ -511,9 +526,9 @@ Decided decidedBy(const std::string& heuristic, const spawn::Graph& graph, const
 
 void heuristics(Session& session, const std::vector<Case>& cases, const Options& options, Kept& kept, Budget& budget) {
   std::printf("\n## Heuristics (table 4.1): ms with the heuristic (H) and inverted (not H)\n\n");
-  std::printf(
-      "| test, edges | pairs | pairs that differ | axioms | t | p | H (deviation) | not H | H faster | not H / H |\n"
-      "|---|---|---|---|---|---|---|---|---|---|\n");
+  std::printf("| test, edges | queues | pairs | pairs that differ | axioms | t | p | H (deviation) | not H | H faster "
+              "| not H / H "
+              "|\n|---|---|---|---|---|---|---|---|---|---|---|\n");
   double tests = 0; // that share the time
   for (const char* name : {"H1", "H2", "H3"}) tests += options.wants("heuristics", name);
   for (const auto& [name, grammarName] :
@@ -527,28 +542,34 @@ void heuristics(Session& session, const std::vector<Case>& cases, const Options&
     size_t edges = 0;
     for (const auto& links : flow.out) edges += links.size();
     std::mt19937 random(1);
-    Kernels kernels(grammar, targetFor(session.device(), grammar.graph));
-    std::vector<std::array<size_t, 2>> pairs;
+    Kernels kernels(grammar, session.device());
+    std::array<std::vector<std::array<size_t, 2>>, 2> kinds; // mixed, groups
     for (uint32_t i = 0; i < options.pairs; ++i) {
       std::vector<bool> isStatic(grammar.graph.edges.size());
       for (size_t e = 0; e < isStatic.size(); ++e) isStatic[e] = random() & 1;
-      std::array<size_t, 2> pair{};
+      std::array<std::array<size_t, 2>, 2> pair{};
       for (const bool inverted : {false, true}) {
         for (const uint32_t edge : decided.edges) isStatic[edge] = decided.isStatic != inverted;
-        pair[inverted] = kernels.add(scheduleOf(grammar.graph, flow, realise(flow, isStatic), name));
+        const auto schedule = scheduleOf(grammar.graph, flow, realise(flow, isStatic), name);
+        pair[0][inverted] = kernels.add(schedule);
+        pair[1][inverted] = kernels.add(withQueues(schedule));
       }
-      pairs.push_back(pair);
+      kinds[0].push_back(pair[0]);
+      kinds[1].push_back(pair[1]);
     }
     const std::vector<uint32_t> counts =
         options.quick ? std::vector<uint32_t>{1, 16} : std::vector<uint32_t>{1, 64, 128, 256};
     const Places places(session, c, grammar, counts);
     Times times(session, kernels, places.list(), grammarName, options.repeat, kept);
     times.measureNew(own);
-    std::erase_if(pairs, [&](const auto& pair) { return std::isnan(times[pair[0]]) || std::isnan(times[pair[1]]); });
-    if (pairs.size() < options.pairs)
+    for (auto& pairs : kinds)
+      std::erase_if(pairs, [&](const auto& pair) { return std::isnan(times[pair[0]]) || std::isnan(times[pair[1]]); });
+    if (const auto& pairs = kinds[1]; pairs.size() < options.pairs) // which are measured last
       budget.allows(std::numeric_limits<double>::infinity(),
                     std::to_string(options.pairs - pairs.size()) + " pairs of " + name);
-    for (size_t n = 0; n < counts.size(); ++n) {
+    for (size_t row = 0; row < 2 * counts.size(); ++row) {
+      const size_t n = row / 2;
+      const auto& pairs = kinds[row % 2];
       std::vector<double> on, off, difference;
       size_t faster = 0, distinct = 0;
       for (const auto& [a, b] : pairs) {
@@ -563,10 +584,11 @@ void heuristics(Session& session, const std::vector<Case>& cases, const Options&
       const Mean h = meanOf(on), notH = meanOf(off), d = meanOf(difference);
       const double t = d.deviation > 0 ? d.mean / (d.deviation / std::sqrt(double(difference.size()))) : 0;
       const double p = pOf(t, double(std::max<size_t>(difference.size(), 2) - 1));
-      std::printf("| %s %s, %zu of %zu | %zu | %zu | %u | %.2f | %s%.4f | %s (%.3f) | %s (%.3f) | %.2f | %.2f |\n",
-                  name, grammarName, decided.edges.size(), edges, difference.size(), distinct, counts[n], t,
-                  p < 1e-4 ? "< " : "", std::max(p, 1e-4), shown(h.mean).c_str(), h.deviation, shown(notH.mean).c_str(),
-                  notH.deviation, double(faster) / double(std::max<size_t>(distinct, 1)), notH.mean / h.mean);
+      std::printf("| %s %s, %zu of %zu | %s | %zu | %zu | %u | %.2f | %s%.4f | %s (%.3f) | %s (%.3f) | %.2f | %.2f |\n",
+                  name, grammarName, decided.edges.size(), edges, row % 2 ? "groups" : "mixed", difference.size(),
+                  distinct, counts[n], t, p < 1e-4 ? "< " : "", std::max(p, 1e-4), shown(h.mean).c_str(), h.deviation,
+                  shown(notH.mean).c_str(), notH.deviation, double(faster) / double(std::max<size_t>(distinct, 1)),
+                  notH.mean / h.mean);
     }
   }
 }
@@ -622,7 +644,7 @@ void schedules(Session& session, const std::vector<Case>& cases, const Options& 
     const auto begin = Clock::now();
     OnDevice on(session, c, options);
     const spawn::Graph& graph = on.grammar.graph;
-    Kernels kernels(on.grammar, targetFor(session.device(), graph));
+    Kernels kernels(on.grammar, session.device());
     std::map<std::string, size_t> named;
     for (const char* name : spawn::kScheduleNames) named[name] = kernels.add(*spawn::namedSchedule(graph, name));
     Times times(session, kernels, {on.place()}, c.name, options.repeat, kept);
@@ -688,6 +710,43 @@ void schedules(Session& session, const std::vector<Case>& cases, const Options& 
   }
 }
 
+/// The named schedules with either kind of queues.
+void queues(Session& session, const std::vector<Case>& cases, const Options& options, Kept& kept, Budget& budget) {
+  std::printf("\n## Queues: ms of each named schedule with one stack a workgroup / with a queue for each execution "
+              "group (its groups)\n\n| case | axioms | terminals |");
+  for (const char* name : spawn::kScheduleNames) std::printf(" %s |", name);
+  std::printf(" best / best |\n|---|---|---|%s---|\n", "---|---|---|---|---|");
+  std::vector<Case> all = cases;
+  for (const Case& c : publishedCases(options.published)) all.push_back(c);
+  double longest = 0; // row
+  for (const Case& c : all) {
+    if (!options.wants("queues", c.name) || !budget.allows(longest, c.name)) continue;
+    const auto begin = Clock::now();
+    OnDevice on(session, c, options);
+    const spawn::Graph& graph = on.grammar.graph;
+    Kernels kernels(on.grammar, session.device());
+    std::vector<std::array<size_t, 2>> pairs;
+    for (const char* name : spawn::kScheduleNames) {
+      const auto schedule = *spawn::namedSchedule(graph, name);
+      pairs.push_back({kernels.add(schedule), kernels.add(withQueues(schedule))});
+    }
+    Times times(session, kernels, {on.place()}, c.name, options.repeat, kept);
+    times.measureNew(budget);
+    const bool published = c.folder != GPGP_SAMPLE_GRAMMARS;
+    std::printf("| %s%s | %u | %llu |", published ? "published " : "", c.name.c_str(), on.count,
+                static_cast<unsigned long long>(on.reference.result.terminals));
+    std::array<double, 2> best;
+    best.fill(std::numeric_limits<double>::infinity());
+    for (const auto& pair : pairs) {
+      std::printf(" %s / %s (%zu) |", shown(times[pair[0]]).c_str(), shown(times[pair[1]]).c_str(),
+                  kernels.schedule(pair[0]).groups);
+      for (size_t kind = 0; kind < 2; ++kind) best[kind] = std::fmin(best[kind], times[pair[kind]]);
+    }
+    std::printf(" %.2f |\n", best[0] / best[1]);
+    longest = std::max(longest, secondsSince(begin));
+  }
+}
+
 void searches(Session& session, const std::vector<Case>& cases, const Options& options, Kept& kept, Budget& budget) {
   std::printf(
       "\n## Searches (table 4.2): ms of the best of %u schedules, the named ones among them; s: for both searches; "
@@ -704,7 +763,7 @@ void searches(Session& session, const std::vector<Case>& cases, const Options& o
     std::string columns;
     for (const bool matching : {false, true}) {
       const auto begin = Clock::now();
-      Kernels kernels(on.grammar, targetFor(session.device(), on.grammar.graph), matching);
+      Kernels kernels(on.grammar, session.device(), matching);
       std::array<std::vector<size_t>, 2> met; // random, heuristic
       for (const spawn::Search search : {spawn::Search::random, spawn::Search::heuristic}) {
         bool complete = false;
@@ -742,7 +801,7 @@ void partitions(Session& session, const std::vector<Case>& cases, const Options&
     size_t groups, kernel;
   };
   std::vector<Row> rows;
-  Kernels kernels(grammar, targetFor(session.device(), grammar.graph));
+  Kernels kernels(grammar, session.device());
   spawn::PartitionEnumerator enumerator(flow);
   do {
     const auto schedule = scheduleOf(grammar.graph, flow, enumerator.roots(), std::to_string(rows.size()));
@@ -785,7 +844,7 @@ void vertices(Session& session, const std::vector<Case>& cases, const Options& o
     Deriver deriver(session, grammar, axiomsOf(c, count), deriverOptions);
     const spawn::Schedule schedule = *spawn::namedSchedule(grammar.graph, "default");
     const spawn::KernelTarget target = targetFor(session.device(), grammar.graph);
-    const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), target, false);
+    const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), session.device(), false);
     const Grammar prepared = deriver.prepare(kernelWords(grammar, kernelInfo(schedule, target), code[0]));
     GpgpSpawnReport report = deriver.fit(prepared);
     while (report.verticesWritten < report.vertices && count > 1) { // fewer, where the device binds less
@@ -817,7 +876,7 @@ void bounds(Session& session, const std::vector<Case>& cases, const Options& opt
     const auto axioms = axiomsOf(c, shareOf(options, c.axioms));
     const spawn::Schedule schedule = *spawn::namedSchedule(grammar.graph, "default");
     const spawn::KernelTarget target = targetFor(session.device(), grammar.graph);
-    const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), target, false);
+    const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), session.device(), false);
     std::printf("| %s | %u |", c.name.c_str(), grammar.graph.buckets);
     for (const bool asVertices : {false, true}) {
       DeriverOptions deriverOptions;
@@ -855,7 +914,7 @@ void curves(Session& session, const std::vector<Case>& cases, const Options& opt
     const BakedGraph grammar = grammarOf(c);
     const spawn::Schedule schedule = *spawn::namedSchedule(grammar.graph, "default");
     const spawn::KernelTarget target = targetFor(session.device(), grammar.graph);
-    const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), target, false);
+    const auto code = compileKernels(grammar.graph, std::span(&schedule, 1), session.device(), false);
     Deriver deriver(session, grammar, axiomsOf(c, 1), {});
     const Grammar prepared = deriver.prepare(kernelWords(grammar, kernelInfo(schedule, target), code[0]));
     const VkDeviceSize range = session.device().properties().limits.maxStorageBufferRange;
@@ -910,7 +969,7 @@ void curves(Session& session, const std::vector<Case>& cases, const Options& opt
 
 const char* const kUsage =
     R"(spawn_bench [--device D] [--seconds N] [--tuning N] [--repeat N] [--pairs N] [--samples N] [--share F]
-            [--exhaustive N] [--keep FILE] [--quick] [TABLE[:ROW]]...
+            [--exhaustive N] [--keep FILE] [--published FOLDER] [--quick] [TABLE[:ROW]]...
 TABLE is one of
   schedules   table 4.2: every case of samples/grammars/cases.txt by the interpreter, the named schedules (DGN: rules)
               and what `gpgp tune` finds, in how many seconds; that against the best named schedule, and against the
@@ -925,8 +984,10 @@ TABLE is one of
               names
   curves      time and memory from 10 to 10^7 axioms; what the device does not bind at once is derived in parts, a
               record each. Rows: the cases' names
-  heuristics  table 4.1: pairs of schedules, a heuristic's edges as it says against inverted, all others random, with
-              a paired t-test, at 1, 64, 128 and 256 axioms. Rows: H1 H2 H3. --pairs N (default 384, as published)
+  queues      table 4.2's named schedules with one stack for all shapes of a workgroup, and with a queue for each
+              execution group. Rows: the cases' names; --published FOLDER: also the grammars of the 2016 paper there
+  heuristics  table 4.1, with one stack and with queues: pairs of schedules, a heuristic's edges as it says against
+              inverted, all others random, with a paired t-test, at 1, 64, 128 and 256 axioms. Rows: H1 H2 H3. --pairs N (default 384, as published)
 ROW is a part of a row's name. --share F takes that part of each case's axioms; --quick is a short form of all.
 --exhaustive N (default 64): the most kernels of a case that `schedules` measures all of; overview has 577,
 simple_house 257, menger_sponge_3 21. --seconds N bounds each table: what would probably take longer is left out and
@@ -940,7 +1001,7 @@ int run(bench::Arguments arguments) {
   Options options;
   bool pairs = false, samples = false, repeat = false;
   const std::vector<std::string> known = {"schedules", "vertices",   "partitions", "bounds",
-                                          "curves",    "heuristics", "searches"};
+                                          "curves",    "heuristics", "searches",   "queues"};
   while (arguments.next()) {
     const std::string& word = arguments.word();
     if (word == "--repeat")
@@ -961,6 +1022,8 @@ int run(bench::Arguments arguments) {
       options.device = arguments.value();
     else if (word == "--keep")
       options.keep = arguments.value();
+    else if (word == "--published")
+      options.published = arguments.value();
     else if (word == "--quick")
       options.quick = true;
     else if (std::find(known.begin(), known.end(), word.substr(0, word.find(':'))) != known.end())
@@ -985,6 +1048,7 @@ int run(bench::Arguments arguments) {
   for (const auto& [name, table] : {std::pair<const char*, Table>{"schedules", schedules},
                                     {"vertices", vertices},
                                     {"partitions", partitions},
+                                    {"queues", queues},
                                     {"bounds", bounds},
                                     {"curves", curves},
                                     {"heuristics", heuristics},

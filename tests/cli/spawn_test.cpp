@@ -135,6 +135,13 @@ TEST(CliSpawn, EveryScheduleDerivesTheSame) {
     EXPECT_EQ(one["key_hash"], wanted["key_hash"]) << schedule;
     EXPECT_EQ(one["budget_exceeded"], false) << schedule;
   }
+  const TemporaryFile queues("schedules_queues.gpgp", "");
+  gpgpJson({"bake", grammar.path(), "--queues", "group", "-o", queues.path()});
+  for (const json& one : {derive({"--schedule", "rw", "--queues", "group"}), derive({"--schedule", queues.path()})}) {
+    EXPECT_EQ(one["schedule"], one["schedule_file"].is_null() ? "rw, queues" : "default, queues");
+    EXPECT_EQ(one["terminals"], wanted["terminals"]);
+    EXPECT_EQ(one["key_hash"], wanted["key_hash"]);
+  }
   for (const char* schedule : {"sgl", "rw"}) {
     const json graph = gpgpJson({"graph", grammar.path(), "--schedule", schedule});
     EXPECT_EQ(all[schedule]["execution_groups"], graph["execution_groups"]) << schedule;
@@ -237,7 +244,10 @@ TEST(CliSpawn, WhatHasNoEffectIsWrong) {
       dynamic("effect_dynamic.pga",
               "axiom Box S;\nterminal T (0, 0);\n"
               "S = Replicate() { P | P };\nP = SetAsDynamicConvexPolygon((0,0.5),(-0.5,-0.5),(0.5,-0.5)) T;\n");
-  expectWrongUsage({{"spawn", grammar.path(), "--matching", "on"},
+  expectWrongUsage({{"spawn", grammar.path(), "--queues", "group", "--schedule", "interpreter"},
+                    {"spawn", grammar.path(), "--queues", "group", "--schedule", "tuned"},
+                    {"spawn", grammar.path(), "--queues", "both"},
+                    {"spawn", grammar.path(), "--matching", "on"},
                     {"spawn", grammar.path(), "--matching", "on", "--schedule", "interpreter"},
                     {"spawn", grammar.path(), "--axiom-file", axioms.path(), "--spacing", "3"},
                     {"spawn", grammar.path(), "--yaw", "3"},

@@ -13,7 +13,8 @@ namespace gpgp::test {
 
 /// The grammar with one more kernel's bytes behind it; fails the test and adds none where it does not compile.
 inline std::vector<uint32_t> withKernel(std::vector<uint32_t> words, const spawn::KernelSource& source,
-                                        spawn::KernelTarget target, const spawn::Fit& fit = {}) {
+                                        spawn::KernelTarget target, const spawn::Fit& fit = {},
+                                        spawn::Queues queues = spawn::Queues::mixed) {
   const auto code = spawn::compileKernel(source, target);
   if (!code) {
     ADD_FAILURE() << code.error().text;
@@ -22,6 +23,7 @@ inline std::vector<uint32_t> withKernel(std::vector<uint32_t> words, const spawn
   spawn::KernelInfo info;
   info.target = target;
   info.fit = fit;
+  info.queues = queues;
   const auto kernel = spawn::serialize(info, *code, words[shader::kHeaderChecksum], std::pmr::new_delete_resource());
   words.insert(words.end(), kernel.begin(), kernel.end());
   return words;

@@ -78,6 +78,13 @@ Shape queuedAt(uint index) {
 /// Behind it is room for the batch's parents.
 const uint stackRoom = stackShapes - groupSize;
 uint stackPlane(uint plane) { return (gl_WorkGroupID.x * kShapePlanes + plane) * stackShapes; }
+#ifdef GPGP_QUEUES
+#include "spawn/derive/queues.glsl"
+#else
+uint placeOf(uint index) { return index; }
+void enterQueue(uint index, uint node) {}
+void emptyQueues() {}
+#endif
 Shape stackedAt(uint index) {
   return unpackShape(stacks[stackPlane(0) + index], stacks[stackPlane(1) + index], stacks[stackPlane(2) + index],
                      stacks[stackPlane(3) + index], stacks[stackPlane(4) + index], stacks[stackPlane(5) + index]);
@@ -141,17 +148,18 @@ void giveAway() {
   }
   if (turnsCount) { // in a loop for each plane there would be six times as many
     for (uint i = lane; i < fitting; i += groupSize) {
-      queues[target + i] = stacks[stackPlane(0) + i];
-      queues[target + record.maxShapes + i] = stacks[stackPlane(1) + i];
-      queues[target + 2 * record.maxShapes + i] = stacks[stackPlane(2) + i];
-      queues[target + 3 * record.maxShapes + i] = stacks[stackPlane(3) + i];
-      queues[target + 4 * record.maxShapes + i] = stacks[stackPlane(4) + i];
-      queues[target + 5 * record.maxShapes + i] = stacks[stackPlane(5) + i];
+      const uint at = placeOf(i);
+      queues[target + i] = stacks[stackPlane(0) + at];
+      queues[target + record.maxShapes + i] = stacks[stackPlane(1) + at];
+      queues[target + 2 * record.maxShapes + i] = stacks[stackPlane(2) + at];
+      queues[target + 3 * record.maxShapes + i] = stacks[stackPlane(3) + at];
+      queues[target + 4 * record.maxShapes + i] = stacks[stackPlane(4) + at];
+      queues[target + 5 * record.maxShapes + i] = stacks[stackPlane(5) + at];
     }
   } else {
     for (uint plane = 0; plane < kShapePlanes; ++plane)
       for (uint i = lane; i < fitting; i += groupSize)
-        queues[target + plane * record.maxShapes + i] = stacks[stackPlane(plane) + i];
+        queues[target + plane * record.maxShapes + i] = stacks[stackPlane(plane) + placeOf(i)];
   }
   if (keeps) {
     keptAt = base;
@@ -159,6 +167,10 @@ void giveAway() {
     keptShapes += count;
   }
   stackSize = 0;
+#ifdef GPGP_QUEUES
+  groupBarrier();
+#endif
+  emptyQueues();
   groupBarrier();
 }
 
@@ -168,18 +180,23 @@ void takeBack() {
   const uint source = nextQueue() + keptAt;
   if (turnsCount) {
     for (uint i = laneIndex(); i < keptCount; i += groupSize) {
-      stacks[stackPlane(0) + i] = queues[source + 1 + i];
-      stacks[stackPlane(1) + i] = queues[source + 1 + record.maxShapes + i];
-      stacks[stackPlane(2) + i] = queues[source + 1 + 2 * record.maxShapes + i];
-      stacks[stackPlane(3) + i] = queues[source + 1 + 3 * record.maxShapes + i];
-      stacks[stackPlane(4) + i] = queues[source + 1 + 4 * record.maxShapes + i];
-      stacks[stackPlane(5) + i] = queues[source + 1 + 5 * record.maxShapes + i];
+      const uint at = placeOf(i);
+      stacks[stackPlane(0) + at] = queues[source + 1 + i];
+      stacks[stackPlane(1) + at] = queues[source + 1 + record.maxShapes + i];
+      stacks[stackPlane(2) + at] = queues[source + 1 + 2 * record.maxShapes + i];
+      stacks[stackPlane(3) + at] = queues[source + 1 + 3 * record.maxShapes + i];
+      stacks[stackPlane(4) + at] = queues[source + 1 + 4 * record.maxShapes + i];
+      stacks[stackPlane(5) + at] = queues[source + 1 + 5 * record.maxShapes + i];
     }
   } else {
     for (uint plane = 0; plane < kShapePlanes; ++plane)
       for (uint i = laneIndex(); i < keptCount; i += groupSize)
-        stacks[stackPlane(plane) + i] = queues[source + 1 + plane * record.maxShapes + i];
+        stacks[stackPlane(plane) + placeOf(i)] = queues[source + 1 + plane * record.maxShapes + i];
   }
+#ifdef GPGP_QUEUES
+  for (uint i = laneIndex(); i < keptCount; i += groupSize)
+    enterQueue(i, queues[source + 1 + 4 * record.maxShapes + i].w);
+#endif
   stackSize = keptCount;
   keptShapes -= keptCount;
   const uvec4 before = queues[source];
@@ -201,9 +218,11 @@ bool othersIdle(uint shapes) {
 void push(bool own, uint place, uint count, Shape s) {
   if (count == 0) return;
   if (stackSize + count > stackRoom) giveAway();
-  if (own)
-    for (uint plane = 0; plane < kShapePlanes; ++plane)
-      stacks[stackPlane(plane) + stackSize + place] = packShape(s, plane);
+  if (own) {
+    const uint at = placeOf(stackSize + place);
+    for (uint plane = 0; plane < kShapePlanes; ++plane) stacks[stackPlane(plane) + at] = packShape(s, plane);
+    enterQueue(stackSize + place, s.node);
+  }
   stackSize += count;
 }
 

@@ -108,6 +108,9 @@ void main() {
     spentInStep = 0;
 #endif
   }
+#ifdef GPGP_QUEUES
+  startQueues();
+#endif
   barrier();
   uvec2 hash = uvec2(0);
   uint depth = 0;
@@ -121,8 +124,9 @@ void main() {
   bool fetched = false; // axioms, which are made of nothing
   uint first = 0;
   uint batches = 0;
+  bool drained = false; // nothing is left to fetch
   const uint mostTurns = mostTurnsOf(count);
-  for (uint turns = 0; turns < mostTurns || made < total; turns += record.batchTurns) {
+  for (uint turns = 0; turns < mostTurns || made < total;) {
     if (made >= total) { // the next batch: what waits in its place, more from the stack, or else from the queue
       total = 0;
       made = 0;
@@ -136,14 +140,28 @@ void main() {
         waiting = 0;
       }
       if (waiting + stackSize == 0 && keptCount > 0) takeBack();
+#ifdef GPGP_QUEUES
+      // Its shapes are of one queue. While none fills a batch, more shapes come into the workgroup, but never so many
+      // that they would leave again.
+      uint more = 0;
+      if (waiting + stackSize > 0) {
+        if (turnsCount) turns += gatherTurns(stackShapes, groupSize);
+        if (waiting + stackSize > stackRoom) giveAway();
+        const uint queue = fullestQueue(waits, s.node);
+        const bool fetches = !drained && queued[queue] < groupSize &&
+                             waiting + stackSize + share < min(enough, stackRoom / 2);
+        more = gather(queue, fetches, waits, waiting, s);
+      }
+#else
       const uint space = groupSize - waiting;
       const uint more = min(stackSize, min(space, max((stackRoom - stackSize) / 8, 1)));
+#endif
       if (more > 0) {
         uint idle;
         const uint place = ranksOf(!waits, false, idle);
         stackBarrier();
         if (!waits && place < more) {
-          s = stackedAt(stackSize - 1 - place);
+          s = stackedAt(placeOf(stackSize - 1 - place));
           waits = true;
         }
         stackSize -= more;
@@ -152,7 +170,11 @@ void main() {
       if (waiting == 0) {
         if (lane == 0) first = atomicAdd(rounds[round].taken, share);
         first = fromFirst(first);
-        if (first >= count) break;
+        if (first >= count) {
+          if (stackSize == 0) break;
+          drained = true; // and there are queues
+          continue;
+        }
         waiting = min(share, count - first);
         fetched = round == 0;
         if (fetched) {
@@ -161,8 +183,14 @@ void main() {
           s = queuedAt(first + lane);
           waits = true;
         }
+#ifdef GPGP_QUEUES
+        if (!fetched) continue;
+#endif
       }
       if (!fetched) {
+#ifdef GPGP_BATCH // tests count batches
+        GPGP_BATCH(waits, s.node)
+#endif
         Fan fan;
         fan.count = 0;
         if (waits) {
@@ -246,6 +274,7 @@ void main() {
     }
     if (end == kEndTerminal) hash += hashOfTerminal(s);
     emit(end == kEndTerminal, places & 0xffffu, terminals, firstTerminal, s);
+    turns += record.batchTurns;
   }
 
   keepsRest = false;

@@ -54,6 +54,14 @@ GPGP_CONST uint kWriteTurns = 24u; // of writing a terminal for each
 GPGP_CONST uint kGrowing = 2u; // batches at most,
 GPGP_CONST uint kGrowth = 16u; // or else, and at least, so many times
 
+GPGP_CONST uint kMostQueues = 128u; // of a kernel; further execution groups share them
+/// Turns of a workgroup's loops for choosing a batch from its queues (shaders/spawn/derive/queues.glsl): one over the
+/// places of the stack with ranks in it, and three over the queues.
+GPGP_FN uint gatherTurns(uint stackShapes, uint groupSize) {
+  const uint ranks = (groupSize > 40u ? groupSize / 4u : 10u) + 2u;
+  return (stackShapes / groupSize + 2u) * ranks + 3u * (kMostQueues / groupSize + 2u);
+}
+
 /// One round of derivation: the arguments of its dispatch, and what its queue holds.
 struct SpawnRound {
   uint groupsX, groupsY, groupsZ; // VkDispatchIndirectCommand

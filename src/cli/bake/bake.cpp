@@ -34,6 +34,7 @@ struct BakeOptions {
   std::string method = "flattened";
 #ifdef GPGP_CLI_SPAWN
   spawn::Heuristics heuristics;
+  std::string queues = "mixed";
 #endif
 #ifdef GPGP_CLI_TEXT
   BakeFontOptions font;
@@ -121,10 +122,13 @@ Baked bakeDrawing(const std::string& text, const std::string& file, const std::s
 /// names: of the files, as the command line has them.
 std::string bakeGrammars(const BakeOptions& options, std::span<const GrammarText> texts, bool linked,
                          const std::vector<std::string>& names) {
-  if (options.schedules.empty())
+  if (options.schedules.empty() && options.queues == "mixed")
     return bytesOf(linked ? linkGrammars(texts, options.set, options.kernel)
                           : compileGrammar(texts[0], options.set, options.kernel));
-  const auto words = withKernels(bakeGraph(texts, linked, options.set), names, options.schedules, options.heuristics);
+  const std::vector<std::string> usual{"default"};
+  const auto words =
+      withKernels(bakeGraph(texts, linked, options.set), names, options.schedules.empty() ? usual : options.schedules,
+                  options.heuristics, options.queues == "group" ? spawn::Queues::groups : spawn::Queues::mixed);
   return {static_cast<const char*>(static_cast<const void*>(words.data())), words.size() * 4};
 }
 #endif
@@ -258,6 +262,8 @@ Work addBake(CLI::App& app) {
       ->type_name("NAME|FILE")
       ->allow_extra_args(false)
       ->excludes(noKernel);
+  addQueues(*command, options->queues, "; of what --schedule compiles");
+  command->get_option("--queues")->excludes(noKernel);
   addGroupSize(*command, options->heuristics);
 #endif
 #ifdef GPGP_CLI_VECTOR

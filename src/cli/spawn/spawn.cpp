@@ -38,7 +38,7 @@ struct SpawnOptions {
   Size imageSize{1280, 720};
   float yaw = 35, pitch = 25, zoom = 1;
   uint32_t maxInstances = 0, maxShapes = 0, maxDepth = 0, maxColliders = 0, slice = 0;
-  std::string schedule = "default", output = "instances", matching = "off";
+  std::string schedule = "default", output = "instances", matching = "off", queues = "mixed";
   bool sorted = false, nodes = false, instanced = false, string = false;
   uint32_t maxModules = 0;
   uint32_t maxFaces = 0, maxVertices = 0, maxGeometry = 0, maxWork = 0;
@@ -61,6 +61,10 @@ struct Chosen {
 void matchesNothing(const SpawnOptions& options, const char* what) {
   if (options.matching == "on") throw Usage(std::string("--matching on changes nothing of ") + what);
 }
+/// --queues group is for kernels that are compiled here.
+void queuesNothing(const SpawnOptions& options, const char* what) {
+  if (options.queues == "group") throw Usage(std::string("--queues group changes nothing of ") + what);
+}
 
 Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, const std::vector<GpgpAxiom>& axioms,
                     Session& session) {
@@ -73,9 +77,11 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
   };
   if (name == "interpreter") {
     matchesNothing(options, "the interpreter");
+    queuesNothing(options, "the interpreter");
     return {{}, name, {}, spawn::namedSchedule(grammar.graph, "default")->groups}; // what waits there waits here
   }
   if (name == "tuned") {
+    queuesNothing(options, "tuned schedules, which `gpgp tune` chooses with the rest");
     const std::filesystem::path file = tunedFile(options.grammars, grammar);
     const auto stored = storedKernels(file, grammar, true);
     if (const auto kernel = kernelFor(stored, session.device(), count);
@@ -92,12 +98,14 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
     std::fprintf(stderr, "gpgp spawn: kept in %s\n", file.string().c_str());
     return taken({tuned.info, {tuned.code.begin(), tuned.code.end()}}, file);
   }
-  const spawn::KernelTarget target = targetFor(session.device(), grammar.graph);
+  const auto queues = options.queues == "group" ? spawn::Queues::groups : spawn::Queues::mixed;
+  const spawn::KernelTarget target = targetFor(session.device(), grammar.graph, queues);
   if (spawn::namedSchedule(grammar.graph, name) || !isBaked(name)) {
-    const auto schedule = scheduleFor(grammar.graph, name, options.heuristics);
+    auto schedule = scheduleFor(grammar.graph, name, options.heuristics);
     if (!schedule)
       throw Usage("--schedule takes sgl, rw, rules, heuristic, tuned, interpreter, default or a file; there is no \"" +
                   name + "\"");
+    if (queues == spawn::Queues::groups) schedule = withQueues(std::move(*schedule));
     if (schedule->roots.empty()) matchesNothing(options, "the default schedule, which is no partition");
     const auto code = compileOrSay(grammar.graph, *schedule, std::span(&target, 1), options.matching == "on",
                                    joined(options.grammars));
@@ -107,6 +115,7 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
   const auto kernel = kernelFor(kernelsIn(name, grammar), session.device(), count);
   if (!kernel) throw Failure(name + " holds no kernel that is for this device");
   matchesNothing(options, "kernels that are baked");
+  queuesNothing(options, "kernels that are baked");
   return taken(*kernel, name);
 }
 
@@ -308,6 +317,7 @@ Outcome spawnLsystem(const SpawnOptions& options, const CommonOptions& common) {
   if (options.grammars.size() > 1) throw Usage("an L-system (.lsys) is derived alone; it cannot be linked");
   for (const auto& [option, given] : {std::pair{"--schedule", options.schedule != "default"},
                                       {"--matching", options.matching != "off"},
+                                      {"--queues", options.queues != "mixed"},
                                       {"--output vertices", options.output != "instances"},
                                       {"--sorted", options.sorted},
                                       {"--max-shapes", options.maxShapes != 0},
@@ -614,6 +624,7 @@ Work addSpawn(CLI::App& app) {
           "FILE: a baked grammar with kernels, or groups as `gpgp graph` prints them")
       ->type_name("NAME|FILE")
       ->capture_default_str();
+  addQueues(*command, options->queues, "");
   addGroupSize(*command, options->heuristics);
   command
       ->add_option(

@@ -5,7 +5,6 @@
 #include "cli/shared/processors.h"
 #include "host/files.h"
 #include "spawn/codegen/compile_kernel.h"
-#include "spawn/codegen/generate.h"
 #include "spawn/graph/blob.h"
 #include "spawn/language/print.h"
 
@@ -120,19 +119,32 @@ std::optional<spawn::Schedule> scheduleFor(const spawn::Graph& graph, const std:
   return spawn::scheduleOf(graph, spawn::makeFlow(graph), roots, std::filesystem::path(nameOrFile).stem().string());
 }
 
-spawn::KernelTarget targetFor(const host::HeadlessDevice& device, const spawn::Graph& graph) {
-  for (const spawn::KernelTarget target : spawn::targetsOf(graph))
+void addQueues(CLI::App& command, std::string& queues, const std::string& unless) {
+  std::vector<std::string> kinds{"group", "mixed"};
+  if (queues == "both") kinds.push_back(queues);
+  command
+      .add_option(
+          "--queues", queues,
+          "Where shapes of a workgroup wait. group: each execution group has a queue, and what runs together is "
+          "of one; mixed: all on one stack" +
+              unless)
+      ->check(CLI::IsMember(kinds))
+      ->capture_default_str();
+}
+
+spawn::KernelTarget targetFor(const host::HeadlessDevice& device, const spawn::Graph& graph, spawn::Queues queues) {
+  for (const spawn::KernelTarget target : spawn::targetsOf(graph, queues))
     if (canRun(device, target)) return target;
   return spawn::KernelTarget::any;
 }
 
 std::vector<KernelCode> compileKernels(const spawn::Graph& graph, std::span<const spawn::Schedule> schedules,
-                                       spawn::KernelTarget target, bool matching) {
+                                       const host::HeadlessDevice& device, bool matching) {
   std::vector<KernelCode> kernels(schedules.size());
   onAllProcessors(schedules.size(), [&](size_t i) {
     const spawn::Schedule& schedule = schedules[i];
-    auto code = spawn::compileKernel(spawn::generate(graph, schedule.waits, matching ? schedule.roots : spawn::Roots{}),
-                                     target);
+    auto code =
+        spawn::compileKernel(spawn::sourceOf(graph, schedule, matching), targetFor(device, graph, schedule.queues));
     if (!code) throw Failure(schedule.name + ": " + code.error().text);
     kernels[i] = std::move(*code);
   });
@@ -142,7 +154,7 @@ std::vector<KernelCode> compileKernels(const spawn::Graph& graph, std::span<cons
 std::vector<KernelCode> compileOrSay(const spawn::Graph& graph, const spawn::Schedule& schedule,
                                      std::span<const spawn::KernelTarget> targets, bool matching,
                                      const std::string& grammar) {
-  const auto source = spawn::generate(graph, schedule.waits, matching ? schedule.roots : spawn::Roots{});
+  const auto source = spawn::sourceOf(graph, schedule, matching);
   const auto say = [&](const char* kind, const std::string& text) {
     std::fprintf(stderr, "%s\n", printable(grammar + kind + text).c_str());
   };
@@ -164,6 +176,7 @@ spawn::KernelInfo kernelInfo(const spawn::Schedule& schedule, spawn::KernelTarge
   spawn::KernelInfo info;
   info.target = target;
   info.groups = static_cast<uint32_t>(schedule.groups);
+  info.queues = schedule.queues;
   std::snprintf(info.schedule, sizeof info.schedule, "%s", schedule.name.c_str());
   return info;
 }
@@ -174,7 +187,8 @@ std::pmr::vector<uint32_t> kernelWords(const BakedGraph& grammar, const spawn::K
 }
 
 std::pmr::vector<uint32_t> withKernels(const BakedGraph& grammar, const std::vector<std::string>& files,
-                                       const std::vector<std::string>& schedules, const spawn::Heuristics& heuristics) {
+                                       const std::vector<std::string>& schedules, const spawn::Heuristics& heuristics,
+                                       spawn::Queues queues) {
   std::pmr::vector<uint32_t> all(grammar.words);
   const auto append = [&](const spawn::KernelInfo& info, std::span<const uint32_t> code) {
     const auto words = kernelWords(grammar, info, code);
@@ -192,14 +206,15 @@ std::pmr::vector<uint32_t> withKernels(const BakedGraph& grammar, const std::vec
       for (const spawn::Kernel& kernel : kernels) append(kernel.info, kernel.code);
       continue;
     }
-    const auto schedule = scheduleFor(grammar.graph, name, heuristics);
+    auto schedule = scheduleFor(grammar.graph, name, heuristics);
     if (!schedule)
       throw Usage("--schedule takes default, sgl, rw, rules, heuristic, tuned or a file; there is no \"" + name + "\"");
     if (forAll)
       throw Usage("--schedule " + *forAll + " is for all devices, so " + name +
                   " would never run; one of them, and tuned ones, go into a file");
     forAll = &name;
-    const auto targets = spawn::targetsOf(grammar.graph); // the first that a device can run is taken
+    if (queues == spawn::Queues::groups) schedule = withQueues(std::move(*schedule));
+    const auto targets = spawn::targetsOf(grammar.graph, queues); // the first that a device can run is taken
     const auto kernels = compileOrSay(grammar.graph, *schedule, targets, false, joined(files));
     for (size_t i = 0; i < targets.size(); ++i)
       if (!kernels[i].empty()) append(kernelInfo(*schedule, targets[i]), kernels[i]);

@@ -39,17 +39,20 @@ Json jsonOf(const std::vector<std::string>& files);
 /// A named schedule, or the one of a file with groups as `gpgp graph` prints it; nothing where there is neither.
 std::optional<spawn::Schedule> scheduleFor(const spawn::Graph& graph, const std::string& nameOrFile,
                                            const spawn::Heuristics& heuristics);
+/// The option --queues: what --schedule names, with a queue for each execution group or without.
+void addQueues(CLI::App& command, std::string& queues, const std::string& unless);
 /// The option --group-size: t of the heuristics.
 void addGroupSize(CLI::App& command, spawn::Heuristics& heuristics);
 
 /// The best of what a graph's kernels can be compiled for that the library takes on this device.
-spawn::KernelTarget targetFor(const host::HeadlessDevice& device, const spawn::Graph& graph);
+spawn::KernelTarget targetFor(const host::HeadlessDevice& device, const spawn::Graph& graph,
+                              spawn::Queues queues = spawn::Queues::mixed);
 
 using KernelCode = std::vector<uint32_t>; ///< as spawn::Kernel::code
-/// The kernel of each schedule, compiled on all processors. matching: execution groups that differ in parameters only
-/// share code.
+/// The kernel of each schedule, compiled on all processors, for what the device runs of it. matching: execution groups
+/// that differ in parameters only share code.
 std::vector<KernelCode> compileKernels(const spawn::Graph& graph, std::span<const spawn::Schedule> schedules,
-                                       spawn::KernelTarget target, bool matching);
+                                       const host::HeadlessDevice& device, bool matching);
 
 /// The kernels of a schedule for kinds of devices. Messages say what of them is interpreted, and where one cannot be
 /// compiled, which is empty then. grammar: its name in messages.
@@ -65,9 +68,10 @@ std::pmr::vector<uint32_t> kernelWords(const BakedGraph& grammar, const spawn::K
 
 /// A grammar's words with kernels behind them, for each of --schedule's values: of a named schedule or a file with
 /// groups one for each kind of device; of a baked file, or of where tuned ones are kept, what is there. files: as
-/// tunedFile. Throws Usage and Failure.
+/// tunedFile. queues: of schedules that are compiled. Throws Usage and Failure.
 std::pmr::vector<uint32_t> withKernels(const BakedGraph& grammar, const std::vector<std::string>& files,
-                                       const std::vector<std::string>& schedules, const spawn::Heuristics& heuristics);
+                                       const std::vector<std::string>& schedules, const spawn::Heuristics& heuristics,
+                                       spawn::Queues queues);
 
 /// Whether a file begins as baked grammars do.
 bool isBaked(const std::filesystem::path& file);

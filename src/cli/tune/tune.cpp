@@ -12,7 +12,7 @@ namespace gpgp::cli {
 namespace {
 
 struct TuneOptions {
-  std::string axiomFile, out, search = "auto", matching = "off";
+  std::string axiomFile, out, search = "auto", matching = "off", queues = "both";
   std::vector<std::string> grammars, set;
   uint32_t axioms = 256;
   std::array<float, 3> size{1, 1, 1};
@@ -23,6 +23,8 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   const BakedGraph grammar = bakeGraph(options.grammars, options.set);
   TuneSettings settings = options.settings;
   settings.matching = options.matching == "on";
+  settings.mixed = options.queues != "group";
+  settings.grouped = options.queues != "mixed";
   if (options.search == "exhaustive") settings.search = spawn::Search::exhaustive;
   if (options.search == "random") settings.search = spawn::Search::random;
   if (options.search == "heuristic") settings.search = spawn::Search::heuristic;
@@ -80,6 +82,7 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
                   {"schedules", scheduleList},
                   {"best",
                    {{"schedule", schedule.name},
+                    {"queues", schedule.queues == spawn::Queues::groups ? "group" : "mixed"},
                     {"execution_groups", schedule.groups},
                     {"gpu_ms_median", best.milliseconds},
                     {"group_size", best.fit.groupSize},
@@ -130,6 +133,7 @@ Work addTune(CLI::App& app) {
                    "Execution groups that differ in parameters only share one piece of code")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
+  addQueues(*command, options->queues, "; both: the fastest schedules are tried with either");
   command->add_option("--samples", settings.samples, "Schedules tried at most, the named ones included")
       ->check(CLI::Range(5u, 10000u))
       ->capture_default_str();

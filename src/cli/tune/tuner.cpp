@@ -55,6 +55,8 @@ constexpr double kForMeasurement = 0.02;
 /// the time.
 constexpr size_t kFirstPart = 4;
 constexpr double kLittleTime = 0.1;
+/// Schedules that are tried with queues; devices whose kernels with queues derive another way lose time on more.
+constexpr size_t kTwins = 4, kSoftwareTwins = 1;
 /// That are measured once more at the end.
 constexpr size_t kFinalists = 4;
 /// Of the finalists, whose fastest counts.
@@ -64,7 +66,7 @@ class Tuner {
 public:
   Tuner(Session& session, const BakedGraph& grammar, const std::vector<GpgpAxiom>& axioms, const TuneSettings& settings)
       : session_(session), grammar_(grammar), settings_(settings), axioms_(static_cast<uint32_t>(axioms.size())),
-        target_(targetFor(session.device(), grammar.graph)), software_(session.device().isSoftware()) {
+        software_(session.device().isSoftware()) {
     findSchedules();
     DeriverOptions options;
     options.maxDepth = settings.maxDepth;
@@ -76,9 +78,10 @@ public:
     std::vector<Candidate> all;
     for (size_t i = 0; i < tuned_.schedules.size(); ++i) all.push_back({i});
     all = measured(std::move(all), "schedules", kForSchedules);
+    tuned_.complete = tuned_.complete && tuned_.omitted == 0;
+    if (settings_.mixed && settings_.grouped) measureQueues(all);
     while (!settings_.search && !tuned_.complete && measureNeighbours(all)) {
     }
-    tuned_.complete = tuned_.complete && tuned_.omitted == 0;
     tuned_.measured = all;
     if (!std::isfinite(all.front().milliseconds))
       throw Failure("no schedule fits this device's budgets; use fewer axioms");
@@ -86,7 +89,7 @@ public:
       // Two schedules are enough for the numbers: what is behind them now hardly wins by them.
       std::vector<Candidate> sizes;
       for (size_t i = 0; i < std::min<size_t>(2, all.size()); ++i)
-        for (const spawn::Fit& fit : fits(target_, software_, isUneven(grammar_.graph), axioms_))
+        for (const spawn::Fit& fit : fits(targetOf(all[i]), software_, isUneven(grammar_.graph), axioms_))
           sizes.push_back({all[i].schedule, fit});
       addAll(all, measured(std::move(sizes), "sizes", kForSizes));
       if (const Candidate& best = all.front(); best.fit.groupSize) {
@@ -104,8 +107,11 @@ private:
   double secondsPassed() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
+  spawn::KernelTarget targetOf(const Candidate& candidate) const {
+    return targetFor(session_.device(), grammar_.graph, tuned_.schedules[candidate.schedule].queues);
+  }
   spawn::KernelInfo infoOf(const Candidate& candidate) const {
-    spawn::KernelInfo info = kernelInfo(tuned_.schedules[candidate.schedule], target_);
+    spawn::KernelInfo info = kernelInfo(tuned_.schedules[candidate.schedule], targetOf(candidate));
     info.fit = candidate.fit;
     return info;
   }
@@ -119,6 +125,11 @@ private:
   }
 
   void findSchedules() {
+    searchAll();
+    if (settings_.mixed) return;
+    for (spawn::Schedule& schedule : tuned_.schedules) schedule = withQueues(std::move(schedule));
+  }
+  void searchAll() {
     const auto search = [&](spawn::Search kind, size_t limit) {
       return searchSchedules(grammar_.graph, kind, limit, settings_.seed, tuned_.complete, settings_.heuristics);
     };
@@ -130,8 +141,19 @@ private:
       if (tuned_.schedules.size() < most && isNew(schedule)) tuned_.schedules.push_back(std::move(schedule));
   }
   bool isNew(const spawn::Schedule& schedule) const {
-    return std::none_of(tuned_.schedules.begin(), tuned_.schedules.end(),
-                        [&](const spawn::Schedule& s) { return s.waits == schedule.waits; });
+    return std::none_of(tuned_.schedules.begin(), tuned_.schedules.end(), [&](const spawn::Schedule& s) {
+      return s.waits == schedule.waits && s.queues == schedule.queues;
+    });
+  }
+
+  /// The best few with queues as well.
+  void measureQueues(std::vector<Candidate>& all) {
+    std::vector<Candidate> list;
+    for (size_t i = 0; i < std::min(software_ ? kSoftwareTwins : kTwins, all.size()); ++i) {
+      list.push_back({tuned_.schedules.size()});
+      tuned_.schedules.push_back(withQueues(tuned_.schedules[all[i].schedule]));
+    }
+    addAll(all, measured(std::move(list), "queues", kForSchedules));
   }
 
   /// Whether one of those near the best is better.
@@ -207,7 +229,7 @@ private:
         missing.push_back(c.schedule);
         schedules.push_back(tuned_.schedules[c.schedule]);
       }
-    auto compiled = compileKernels(grammar_.graph, schedules, target_, settings_.matching);
+    auto compiled = compileKernels(grammar_.graph, schedules, session_.device(), settings_.matching);
     for (size_t i = 0; i < missing.size(); ++i) kernels_[missing[i]] = std::move(compiled[i]);
   }
   std::vector<std::pmr::vector<uint32_t>> wordsOf(std::span<const Candidate> candidates) const {
@@ -287,7 +309,6 @@ private:
   const BakedGraph& grammar_;
   const TuneSettings& settings_;
   const uint32_t axioms_;
-  const spawn::KernelTarget target_;
   const bool software_;
   std::vector<KernelCode> kernels_; // by schedule; empty: not compiled yet
   std::optional<Deriver> deriver_;

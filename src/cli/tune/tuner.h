@@ -1,9 +1,10 @@
 // Finds the fastest schedule of a grammar on a device by measuring.
 //
-// First schedules (which edges are static), each with the device's usual numbers, and those near the best of them,
-// until none of these is better; then, for the best two, the size and count of workgroups; then, for the best, when
-// work is spread, and whether idle workgroups get some; then the best few by turns, as they would be kept. Every
-// candidate must derive what the interpreter derives, within the budgets that the interpreter needs.
+// First schedules (which edges are static), each with the device's usual numbers; the best few of them with a queue for
+// each execution group; and those near the best, until none of these is better. Then, for the best two, the size and
+// count of workgroups; then, for the best, when work is spread, and whether idle workgroups get some; then the best few
+// by turns, as they would be kept. Every candidate must derive what the interpreter derives, within the budgets that
+// the interpreter needs.
 //
 // Nearly all of the time goes into the driver's compiler. Kernels are compiled on all processors, as many at a time as
 // there are, and no more of them than the time allows: the best is chosen from what was measured by then.
@@ -18,10 +19,11 @@ struct TuneSettings {
   /// Nothing: every partition where there are no more than samples; else half of the samples as the heuristics and
   /// coins say, and what is near the best of them.
   std::optional<spawn::Search> search;
-  bool matching = false; ///< chains of groups that differ in parameters only share code
+  bool mixed = true, grouped = true; ///< kinds of queues that are tried: one or both
+  bool matching = false;             ///< chains of groups that differ in parameters only share code
   spawn::Heuristics heuristics;
   bool schedulesOnly = false; ///< leave the numbers as the device suggests
-  uint32_t samples = 32;      ///< schedules at most, the named ones included
+  uint32_t samples = 32;      ///< schedules at most, the named ones included; the best few once more with queues
   uint32_t repeat = 15, seed = 1;
   uint32_t maxDepth = 0; ///< as DeriverOptions
   double seconds = 50;   ///< nothing is begun that would probably take longer; 0: no limit. The interpreter and one

@@ -63,9 +63,9 @@ std::string kernelText(const std::string& functions, KernelTarget target) {
          functions + "#include \"spawn/derive/derive.glsl\"\n";
 }
 
-std::span<const KernelTarget> targetsOf(const Graph& graph) {
+std::span<const KernelTarget> targetsOf(const Graph& graph, Queues queues) {
   static constexpr KernelTarget kTargets[] = {KernelTarget::software, KernelTarget::subgroups, KernelTarget::any};
-  return std::span(kTargets).subspan(graph.phases ? 1 : 0);
+  return std::span(kTargets).subspan(graph.phases || queues == Queues::groups ? 1 : 0);
 }
 
 std::vector<uint32_t> optimize(std::span<const uint32_t> spirv) {

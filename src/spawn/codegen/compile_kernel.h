@@ -27,8 +27,9 @@ constexpr const char* kInterpreted = "there is no kernel for some devices, which
 /// What is to be said about it to people: that some operators are interpreted, or all. Empty where all are code.
 std::string remarkOn(const KernelSource& source);
 
-/// What a graph's kernels are worth compiling for, the best of a device first. Colliders are not derived by batches.
-std::span<const KernelTarget> targetsOf(const Graph& graph);
+/// What a graph's kernels are worth compiling for, the best of a device first. Colliders are not derived by batches,
+/// and those have no queues.
+std::span<const KernelTarget> targetsOf(const Graph& graph, Queues queues = Queues::mixed);
 
 /// The whole kernel's text, before its includes are followed: for people.
 std::string kernelText(const std::string& functions, KernelTarget target);

@@ -1,5 +1,6 @@
 #include "spawn/codegen/generate.h"
 
+#include "spawn/codegen/queues.h"
 #include "spawn/codegen/room.h"
 #include "spawn/codegen/table.h"
 #include "spawn/graph/matching.h"
@@ -29,7 +30,7 @@ std::string number(uint32_t value) { return std::to_string(value) + "u"; }
 
 class Generator {
 public:
-  Generator(const Graph& graph, const std::vector<bool>& waits, const Roots& roots)
+  Generator(const Graph& graph, const std::vector<bool>& waits, const Roots& roots, Queues queues)
       : graph_(graph), waits_(waits), stops_(waits), peers_(graph.nodes.size()), row_(graph.nodes.size()),
         group_(graph.nodes.size(), kNoGroup), table_(makeTable(graph, waits)) {
     uint64_t choices = 0;
@@ -41,13 +42,13 @@ public:
     for (const Edge& edge : graph.edges)
       if (edge.recursive && edge.target != kNoNode) stops_[edge.target] = true;
     if (!roots.empty()) match(roots);
+    for (const std::vector<uint32_t>& peers : peers_) first_.push_back(peers[0]);
+    if (queues == Queues::groups) writeQueues(numberQueues(graph, stops_, first_));
   }
 
   KernelSource run() {
     if (graph_.phases) add("#define GPGP_COLLIDERS\n");
-    std::vector<uint32_t> first;
-    for (const std::vector<uint32_t>& peers : peers_) first.push_back(peers[0]);
-    room_ = findRoom(graph_, waits_, first, entered(), table_.chooses);
+    room_ = findRoom(graph_, waits_, first_, entered(), table_.chooses);
     writeParameters();
     uint32_t operators = 0;
     for (const Node& node : graph_.nodes) {
@@ -75,6 +76,14 @@ public:
 
 private:
   void add(const std::string& text) { out_ += text; }
+
+  /// Each node's queue stands behind the table.
+  void writeQueues(const QueueNumbers& queues) {
+    add("#define GPGP_QUEUES " + number(queues.count) + "\n#define GPGP_QUEUE_TABLE " +
+        number(static_cast<uint32_t>(table_.words.size())) + "\n");
+    table_.words.insert(table_.words.end(), queues.ofNodes.begin(), queues.ofNodes.end());
+    table_.words.resize((table_.words.size() + 3) / 4 * 4);
+  }
 
   // ---------------------------------------------------------------- matched groups
 
@@ -572,6 +581,7 @@ private:
   std::vector<bool> stops_;                  // by node: shapes wait there, those that come back to it included
   std::vector<std::vector<uint32_t>> peers_; // by node: in its place in matching groups, by row
   std::vector<uint32_t> row_, group_;        // by node
+  std::vector<uint32_t> first_;              // of its peers, by node
   Room room_;
   std::vector<uint32_t> matched_;
   KernelTable table_;
@@ -580,8 +590,8 @@ private:
 };
 } // namespace
 
-KernelSource generate(const Graph& graph, const std::vector<bool>& waits, const Roots& matched) {
-  return Generator(graph, waits, matched).run();
+KernelSource generate(const Graph& graph, const std::vector<bool>& waits, const Roots& matched, Queues queues) {
+  return Generator(graph, waits, matched, queues).run();
 }
 
 } // namespace gpgp::spawn

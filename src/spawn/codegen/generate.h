@@ -6,6 +6,7 @@
 // through a queue, to any other it goes on in the same invocation. The result equals the interpreter's to the last bit,
 // as both call shaders/spawn/shared/operators.h and constants are folded with the same arithmetic.
 #pragma once
+#include "spawn/graph/kernel.h"
 #include "spawn/graph/partition.h"
 
 #include <string>
@@ -23,7 +24,9 @@ struct KernelSource {
 /// The source of a valid graph's kernel. waits: by node, where shapes go through a queue. An operator that multiplies
 /// by a known number and does not wait joins the family of the one before it (table.h); others that multiply wait in
 /// any case. matched: the roots of a valid partition; chains of execution groups that differ in parameters only then
-/// share their code (thesis 4.2.3). Without it each node has code of its own.
-KernelSource generate(const Graph& graph, const std::vector<bool>& waits, const Roots& matched = {});
+/// share their code (thesis 4.2.3). Without it each node has code of its own. queues: where shapes wait in a workgroup;
+/// groups that share code share a queue.
+KernelSource generate(const Graph& graph, const std::vector<bool>& waits, const Roots& matched = {},
+                      Queues queues = Queues::mixed);
 
 } // namespace gpgp::spawn

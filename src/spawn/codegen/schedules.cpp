@@ -94,6 +94,16 @@ Schedule scheduleOf(const Graph& graph, const Flow& flow, const Roots& roots, st
   return schedule;
 }
 
+Schedule withQueues(Schedule schedule) {
+  schedule.queues = Queues::groups;
+  schedule.name = schedule.name.substr(0, 23) + ", queues"; // names fit a kernel's
+  return schedule;
+}
+
+KernelSource sourceOf(const Graph& graph, const Schedule& schedule, bool matching) {
+  return generate(graph, schedule.waits, matching ? schedule.roots : Roots{}, schedule.queues);
+}
+
 std::optional<Schedule> namedSchedule(const Graph& graph, const std::string& name, const Heuristics& heuristics) {
   const Flow flow = makeFlow(graph);
   if (name == "default") return defaultSchedule(graph, flow);
@@ -152,6 +162,7 @@ std::vector<Schedule> neighbours(const Graph& graph, const Schedule& schedule) {
     const size_t shown = std::min<size_t>(schedule.name.find(" but "), 16); // the first one's name: they fit a kernel's
     found.push_back(scheduleOf(graph, flow, realise(flow, other),
                                schedule.name.substr(0, shown) + " but node " + std::to_string(n)));
+    if (schedule.queues == Queues::groups) found.back() = withQueues(std::move(found.back()));
   }
   return found;
 }

@@ -3,6 +3,7 @@
 // A partition's roots wait, and so does what multiplies by a number that is not known before (table.h). Partitions that
 // differ only in edges into the latter give the same kernel, and a search meets each kernel once.
 #pragma once
+#include "spawn/codegen/generate.h"
 #include "spawn/graph/heuristics.h"
 
 #include <string>
@@ -15,11 +16,18 @@ struct Schedule {
                            ///< can be where shapes wait where it lets them
   std::vector<bool> waits; ///< by node
   Roots roots;             ///< of the partition; empty for "default", which is none
+  Queues queues = Queues::mixed;
 };
 
 /// sgl, rw, rules, heuristic, or default (as few as are worth it, docs/internals/spawn.md); nothing for other names.
 std::optional<Schedule> namedSchedule(const Graph& graph, const std::string& name, const Heuristics& heuristics = {});
 constexpr const char* kScheduleNames[] = {"default", "sgl", "rw", "rules", "heuristic"};
+
+/// The same with a queue for each execution group, and a name that says so.
+Schedule withQueues(Schedule schedule);
+
+/// The source of its kernel. matching: as generate() has it.
+KernelSource sourceOf(const Graph& graph, const Schedule& schedule, bool matching = false);
 
 Schedule scheduleOf(const Graph& graph, const Flow& flow, const Roots& roots, std::string name);
 

@@ -9,15 +9,18 @@ namespace {
 using core::makeError;
 
 constexpr uint32_t kKernelMagic = 0x6b677067u; // "gpgk"
-constexpr uint32_t kKernelVersion = 14;
+constexpr uint32_t kKernelVersion = 15;
+constexpr uint32_t kMostPlaces = 4096; ///< of a stack with queues: their list lies in shared memory
 constexpr uint32_t kSpirvMagic = 0x07230203u;
 /// Words before the code: magic, version, words of everything, checksum of what follows it, graph, info.
 constexpr uint32_t kChecked = 4, kInfo = 5, kInfoWords = sizeof(KernelInfo) / 4, kHeader = kInfo + kInfoWords;
-static_assert(sizeof(KernelInfo) == 76);
+static_assert(sizeof(KernelInfo) == 80);
 
 bool isUsable(const KernelInfo& info) {
   const Fit& fit = info.fit;
-  if (info.schedule[31] != 0 || info.target > KernelTarget::software) return false;
+  if (info.schedule[31] != 0 || info.target > KernelTarget::software || info.queues > Queues::groups) return false;
+  if (info.queues == Queues::groups && (info.target == KernelTarget::software || fit.stackShapes > kMostPlaces))
+    return false;
   if (fit == Fit{.rounds = fit.rounds}) return true; // as the device's kind suggests
   const bool power = (fit.groupSize & (fit.groupSize - 1)) == 0;
   return power && fit.groupSize >= 8 && fit.groupSize <= 1024 && fit.maxGroups >= 1 && fit.maxGroups <= 65535 &&

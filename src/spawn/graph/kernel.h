@@ -31,6 +31,12 @@ enum class KernelTarget : uint32_t {
   software   ///< on the CPU, and with them (shaders/spawn/derive/derive_batches.glsl); workgroups are subgroups
 };
 
+/// Where shapes wait in a workgroup.
+enum class Queues : uint32_t {
+  mixed, ///< all on one stack: batches are of any execution groups
+  groups ///< each execution group has a queue, and batches are of one (shaders/spawn/derive/queues.glsl)
+};
+
 /// The code that a kernel has room for, in operators. Each counts wherever it is inlined, with a share for its
 /// expressions and edges, and more where it keeps one of several shapes. The sample grammars need 2 to 138.
 constexpr uint32_t kRoom = 256;
@@ -41,7 +47,8 @@ struct KernelInfo {
   uint32_t vendor = 0, device = 0; ///< VkPhysicalDeviceProperties; 0: any
   uint32_t axioms = 0;             ///< tuned for this many axioms; 0: any
   KernelTarget target = KernelTarget::any;
-  uint32_t groups = 0;    ///< execution groups of the schedule
+  uint32_t groups = 0; ///< execution groups of the schedule
+  Queues queues = Queues::mixed;
   char schedule[32] = {}; ///< a name for people
 };
 

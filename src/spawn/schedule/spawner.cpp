@@ -20,8 +20,12 @@ static_assert(sizeof(GpgpCompactInstance) == 32 && offsetof(GpgpCompactInstance,
               offsetof(GpgpCompactInstance, rotation) == 24);
 static_assert(sizeof(VkDrawIndexedIndirectCommand) == 4 * shader::kDrawWords);
 
-/// Shared memory of derive.glsl for each invocation: a parent's fan, two sums.
-constexpr uint32_t kSharedBytesEach = 16;
+/// Shared memory of derive.glsl: for each invocation a parent's fan and two sums; with queues their lists.
+uint32_t sharedBytes(const KernelInfo& info) {
+  const uint32_t bytes = info.fit.groupSize * 16 + 64;
+  if (info.queues == Queues::mixed) return bytes;
+  return bytes + 4 * (info.fit.stackShapes + shader::kMostQueues + info.fit.groupSize);
+}
 constexpr uint32_t kDefaultShapes = 131072, kDefaultTerminals = 524288, kDefaultDepth = 64, kDefaultRounds = 4,
                    kSoftwareRounds = 32;
 /// Where it is known how much there is to begin with: one round more would be another empty one for most.
@@ -153,7 +157,8 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   constants.one = 1;
   constants.firstInstance = info.firstInstance;
   if (context.device.software) {
-    const TurnsLimit limit = limitTurns(constants, grammar.turns, fit, batches ? fit.groupSize : 0, kernel != nullptr);
+    const TurnsLimit limit = limitTurns(constants, grammar.turns, fit, batches ? fit.groupSize : 0, kernel != nullptr,
+                                        kernel ? kernel->info.queues : Queues::mixed);
     if (!limit) return core::makeError(GPGP_ERROR_UNSUPPORTED, kTooManyTurns, limit.needed, limit.most);
   } else {
     constants.steps = kMostSteps * kStepTurns;
@@ -251,12 +256,12 @@ core::Result<void> Spawner::prewarm(Grammar& grammar) const {
     if ((info.vendor && info.vendor != context.device.vendor) || (info.device && info.device != context.device.model))
       continue; // tuned for another device
     if (info.fit.groupSize > device.maxComputeWorkGroupInvocations ||
-        info.fit.groupSize > device.maxComputeWorkGroupSize[0] ||
-        info.fit.groupSize * kSharedBytesEach + 64 > device.maxComputeSharedMemorySize)
+        info.fit.groupSize > device.maxComputeWorkGroupSize[0] || sharedBytes(info) > device.maxComputeSharedMemorySize)
       continue;
     shader::SpawnConstants constants{};
-    if (context.device.software && !limitTurns(constants, grammar.turns, info.fit,
-                                               info.target == KernelTarget::software ? info.fit.groupSize : 0, true))
+    if (context.device.software &&
+        !limitTurns(constants, grammar.turns, info.fit, info.target == KernelTarget::software ? info.fit.groupSize : 0,
+                    true, info.queues))
       continue; // workgroups and stacks that this device has no turns for
     const auto pipeline =
         createComputePipeline({kernel.info.schedule, kernel.spirv(),

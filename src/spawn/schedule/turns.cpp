@@ -118,7 +118,8 @@ Turns turnsOf(const Graph& graph) {
   return turns;
 }
 
-TurnsLimit limitTurns(SpawnConstants& constants, const Turns& turns, const Fit& fit, uint32_t subgroup, bool isKernel) {
+TurnsLimit limitTurns(SpawnConstants& constants, const Turns& turns, const Fit& fit, uint32_t subgroup, bool isKernel,
+                      Queues queues) {
   constants.operatorTurns = turns.passed;
   constants.mostQueried = 512;
   // Where a shape's operators or children would take more, others get their turn.
@@ -146,6 +147,10 @@ TurnsLimit limitTurns(SpawnConstants& constants, const Turns& turns, const Fit& 
     constants.leftTurns = 24;
     const uint32_t steps = turns.phases ? 1 : std::max(fit.stackShapes / fit.groupSize, 2u) - 1; // of a batch
     beyond = steps * constants.batchTurns + (turns.phases ? kDeviceTurns / 8 : 0);
+    if (queues == Queues::groups) { // two more batches may be chosen, one of them what was fetched
+      constants.leftTurns += kMostQueues / fit.groupSize + 2;
+      beyond += 3 * gatherTurns(fit.stackShapes, fit.groupSize);
+    }
   }
   const uint32_t leftRows = subgroup ? 8192 : 512;
   constants.mostLeft = leftRows * (subgroup ? subgroup : fit.groupSize);

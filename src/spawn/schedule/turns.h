@@ -25,9 +25,9 @@ struct TurnsLimit {
   explicit operator bool() const { return needed <= most; }
 };
 /// Says in a recording's constants how long workgroups of a software device go on. subgroup: invocations of one, for a
-/// kernel that derives by batches; 0: it derives by steps.
+/// kernel that derives by batches; 0: it derives by steps. queues: of a kernel.
 TurnsLimit limitTurns(shader::SpawnConstants& constants, const Turns& turns, const Fit& fit, uint32_t subgroup,
-                      bool isKernel);
+                      bool isKernel, Queues queues = Queues::mixed);
 /// Records that a workgroup makes vertices of at once, and how often.
 struct Expansion {
   uint32_t records, times;
