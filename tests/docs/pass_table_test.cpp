@@ -126,7 +126,8 @@ std::array<std::string, 2> pages() {
   const ShaderFiles files;
   const std::string vector =
       "# Passes of the vector service\n\n"
-      "The tables of [Passes](passes.md) for canvases. `pass_table_test --write` makes them, too. What the passes do is\n"
+      "The tables of [Passes](passes.md) for canvases. `pass_table_test --write` makes them, too. What the passes do "
+      "is\n"
       "in [vector](vector.md) and [patches](patches.md).\n\n"
       "## On hardware, and with `GPGP_CANVAS_PATCHES` on every device\n\n" +
       tableOf(test::canvasPasses(false), files) +
@@ -134,18 +135,19 @@ std::array<std::string, 2> pages() {
       tableOf(test::canvasPasses(false, true), files, "patch ") + "\n## On software devices\n\n" +
       tableOf(test::canvasPasses(true), files);
   return {"# Passes\n\n"
-         "Each recorder has a list of passes. From it come barriers, scratch, labels and timestamps.\n"
-         "`pass_table_test --write` makes these tables; the test compares them. Files lie\n"
-         "below `shaders/`. Forms of a pass, of which a recording runs one, share a row, and so do passes of one\n"
-         "file with the same resources. What they do is in [spawn](spawn.md), [visibility](visibility.md) and\n"
-         "[atlas](atlas.md). Those of canvases are in [vector passes](vector_passes.md).\n\n"
-         "## Spawn\n\nOf ordered instances, with colliders:\n\n" +
-         tableOf(test::spawnPasses(false), files) + "\nOf ordered vertices:\n\n" +
-         tableOf(test::spawnPasses(true), files) +
-         "\nForms of the interpreter, which pass `derive` runs for grammars without a kernel:\n\n" +
-         interpreters(files) +
-         "\n## Visibility\n\nWith all methods. Without 64-bit atomics there are passes `ids`, too.\n\n" +
-         tableOf(test::visibilityPasses(), files) + "\n### Shading atlas\n\n" + tableOf(test::atlasPasses(), files),
+          "Each recorder has a list of passes. From it come barriers, scratch, labels and timestamps.\n"
+          "`pass_table_test --write` makes these tables; the test compares them. Files lie\n"
+          "below `shaders/`. Forms of a pass, of which a recording runs one, share a row, and so do passes of one\n"
+          "file with the same resources. What they do is in [spawn](spawn.md), [visibility](visibility.md) and\n"
+          "[atlas](atlas.md). Those of canvases are in [vector passes](vector_passes.md).\n\n"
+          "## Spawn\n\nOf ordered instances, with colliders:\n\n" +
+              tableOf(test::spawnPasses(false), files) + "\nOf ordered vertices:\n\n" +
+              tableOf(test::spawnPasses(true), files) +
+              "\nForms of the interpreter, which pass `derive` runs for grammars without a kernel:\n\n" +
+              interpreters(files) +
+              "\n## Visibility\n\nWith all methods. Without 64-bit atomics there are passes `ids`, too.\n\n" +
+              tableOf(test::visibilityPasses(), files) + "\n### Shading atlas\n\n" +
+              tableOf(test::atlasPasses(), files),
           vector};
 }
 } // namespace

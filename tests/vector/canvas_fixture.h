@@ -34,8 +34,8 @@ struct CanvasTest : DeviceTest {
   GpgpRecorder canvas = nullptr;
   bool exactArea = false, blendSrgb = false, encodeSrgb = false;
   std::vector<GpgpCanvasImage> images;
-  GpgpDrawingMethods drawingMethods = 0;                     ///< of the drawings that are made
-  GpgpCanvasMethod canvasMethod = GPGP_CANVAS_FLATTENED;     ///< of the canvases
+  GpgpDrawingMethods drawingMethods = 0;                        ///< of the drawings that are made
+  GpgpCanvasMethod canvasMethod = GPGP_CANVAS_FLATTENED;        ///< of the canvases
   GpgpCanvasTargets canvasTargets = GPGP_CANVAS_TARGET_RGBA16F; ///< of the canvases that are made
 
   void makeCanvas(uint32_t size = 512, uint32_t entries = 0, uint32_t paths = 0,

@@ -52,8 +52,7 @@ GPGP_FN SquareBox squareBox(PatchItemRecord m, float px, float py, float size) {
   box.low = vec2(3e38f, 3e38f);
   box.high = vec2(-3e38f, -3e38f);
   for (uint corner = 0u; corner < 4u; ++corner) {
-    const vec3 at =
-        patchPoint(m, (corner & 1u) != 0u ? px + size : px, (corner & 2u) != 0u ? py + size : py);
+    const vec3 at = patchPoint(m, (corner & 1u) != 0u ? px + size : px, (corner & 2u) != 0u ? py + size : py);
     if (!(at.z > 0.0f)) box.seen = false;
     box.low = vec2(min(box.low.x, at.x), min(box.low.y, at.y));
     box.high = vec2(max(box.high.x, at.x), max(box.high.y, at.y));
@@ -119,8 +118,7 @@ GPGP_FN uint passesThrough(uint slot, uint curves, TilePatchRecord patch_, Patch
 // Whether a point of a pixel lies in the patch, where `what` passes through the pixel.
 GPGP_FN bool patchHolds(uint slot, uint curves, TilePatchRecord patch_, PatchItemRecord m, vec4 scissor, uint what,
                         float px, float py) {
-  if ((what & kPatchScissorPasses) != 0u &&
-      !(px >= scissor.x && py >= scissor.y && px < scissor.z && py < scissor.w))
+  if ((what & kPatchScissorPasses) != 0u && !(px >= scissor.x && py >= scissor.y && px < scissor.z && py < scissor.w))
     return false;
   const vec3 at = patchPoint(m, px, py);
   const vec2 origin = originOf(m);

@@ -254,10 +254,10 @@ struct PatchItemRecord {
 
 // A patch's square of tiles, or single tile, that its curves pass.
 struct PatchPlaceRecord {
-  uint path;  // of the recording
-  uint place; // tile, y in the upper half; of squares the first one's
+  uint path;   // of the recording
+  uint place;  // tile, y in the upper half; of squares the first one's
   uint record; // vec4 of its TilePatchRecord
-  uint what;  // curves and edges (kPatchRows...) that pass, and from kPatchItemBit on the PatchItemRecord
+  uint what;   // curves and edges (kPatchRows...) that pass, and from kPatchItemBit on the PatchItemRecord
 };
 
 // A flattened segment between mark and fill.
@@ -318,10 +318,10 @@ GPGP_CONST uint kTileListWords = 32u;
 GPGP_CONST uint kTileListPaths = 15u;
 GPGP_CONST uint kBinHead = 3u;    // 0, or 1 + how many paths the bin has as a list (pack.comp); where that lies; and:
 GPGP_CONST uint kBinGrouped = 2u; // 1: one of its paths may need the general shader
-GPGP_CONST uint kMaxTileCurves = 4u; // of a TilePatchRecord
+GPGP_CONST uint kMaxTileCurves = 4u;                          // of a TilePatchRecord
 GPGP_CONST uint kPatchBlockTiles = 8u, kPatchBlocks = 65536u; // side of a square; room for as many
 GPGP_CONST uint kPatchItemBit = 8u;
-GPGP_CONST uint kFillPatches = 4u; // of a workgroup of patches/fill.comp
+GPGP_CONST uint kFillPatches = 4u;             // of a workgroup of patches/fill.comp
 GPGP_CONST uint kEntryPatch = (1u << 29) - 1u; // patches of a drawing, at most
 
 // How many segments lie between those of the table of first items.
@@ -340,8 +340,7 @@ static_assert(sizeof(gpgp::shader::ItemRecord) == 160 && sizeof(gpgp::shader::Sh
               sizeof(gpgp::shader::BoxedPath) == 48 && sizeof(gpgp::shader::TileWord) == 16 &&
               sizeof(gpgp::shader::CanvasHeader) == 160 && sizeof(gpgp::shader::CanvasCounters) == 160 &&
               sizeof(gpgp::shader::TilePatchRecord) == 48 && sizeof(gpgp::shader::PatchItemRecord) == 112 &&
-              sizeof(gpgp::shader::PatchPlaceRecord) == 16 &&
-              sizeof(gpgp::shader::PatchTableRecord) == 32 &&
+              sizeof(gpgp::shader::PatchPlaceRecord) == 16 && sizeof(gpgp::shader::PatchTableRecord) == 32 &&
               sizeof(gpgp::shader::FlatSegmentRecord) == 24);
 #endif
 #endif

@@ -50,7 +50,8 @@ std::optional<Canvas> largerCanvas(Session& session, GpgpCanvasCreateInfo& info,
       if (report.layerPixels != UINT32_MAX) // which no budget holds
         next.maxLayerPixels = std::max(info.maxLayerPixels, std::min(report.layerPixels, 1u << 28));
       next.maxLayerOperations = std::max(info.maxLayerOperations, std::min(report.layerOperations, 65536u));
-      const bool layers = next.maxTilePatches > report.tilePatchesGiven || next.maxDrawings > report.itemsGiven || next.maxLayerPixels > report.layerPixelsGiven ||
+      const bool layers = next.maxTilePatches > report.tilePatchesGiven || next.maxDrawings > report.itemsGiven ||
+                          next.maxLayerPixels > report.layerPixelsGiven ||
                           next.maxLayerOperations > report.layerOperationsGiven;
       if (!layers && next.maxTileEntries == report.tileEntriesGiven && next.maxTileWords == report.tileWordsGiven)
         continue;

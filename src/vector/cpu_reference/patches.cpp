@@ -84,12 +84,13 @@ bool coverByPatches(const CpuInput& input, uint32_t itemIndex, CpuPlaces& places
       const auto coverage = std::span(places.coverage).subspan(path * pixels, pixels);
       for (uint32_t y = tiles.y; y < tiles.w; ++y)
         for (uint32_t x = tiles.x; x < tiles.z; ++x) {
-          const uint32_t what = reader.passesThrough(
-              0, m.curves - first, patch, m, item.scissor, PatchReader::kPatchAllPass,
-              static_cast<float>(x * kTileSize), static_cast<float>(y * kTileSize), static_cast<float>(kTileSize));
+          const uint32_t what = reader.passesThrough(0, m.curves - first, patch, m, item.scissor,
+                                                     PatchReader::kPatchAllPass, static_cast<float>(x * kTileSize),
+                                                     static_cast<float>(y * kTileSize), static_cast<float>(kTileSize));
           if (what == PatchReader::kPatchOutside) continue;
           const uint32_t column = x - p.left;
-          shader::TileWord& word = places.words[p.firstWord + (y - p.top) * ((p.right - p.left + 31) / 32) + column / 32];
+          shader::TileWord& word =
+              places.words[p.firstWord + (y - p.top) * ((p.right - p.left + 31) / 32) + column / 32];
           (what ? word.edges : word.inside) |= 1u << (column & 31);
           coverTile(input, reader, m.curves - first, patch, m, item.scissor, what, x, y, coverage);
         }

@@ -32,7 +32,9 @@ PassBuilder::PassBuilder(const CanvasSizes& canvas, const core::Device& device, 
                                                              2 * sizeof(StopRecord)) +
                                   room.items * VkDeviceSize(sizeof(shader::ItemClipRecord) + sizeof(LayerRecord)) +
                                   (maxAssets(room) + 1) * VkDeviceSize(sizeof(SlotRecord)) +
-                                  (sizes.maxTilePatches ? sizeof(shader::PatchTableRecord) + room.items * VkDeviceSize(sizeof(shader::PatchItemRecord)) : 0);
+                                  (sizes.maxTilePatches ? sizeof(shader::PatchTableRecord) +
+                                                              room.items * VkDeviceSize(sizeof(shader::PatchItemRecord))
+                                                        : 0);
   fromHost = list.add({"constants", core::ResourceKind::constants,
                        heads + room.items * sizeof(ItemRecord) + placed * sizeof(PlacementRecord) + shapeBytes});
   paths = list.add({"paths", scratch, VkDeviceSize(room.paths) * sizeof(shader::PlacedPath)});

@@ -152,8 +152,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   const bool layered =
       std::any_of(assets.begin(), assets.end(), [](const ItemAsset& asset) { return asset.layered(); });
   LayerPlanner planner(layers_, sizes_.layers, operationPasses_, sizes_.maxBins(), info);
-  Gather gather(context, sizes_.items, tables_, placements, info, layered ? 0 : sizes_.smallGlyphRoom(), sizes_.maxTilePatches != 0,
-                layered ? &planner : nullptr);
+  Gather gather(context, sizes_.items, tables_, placements, info, layered ? 0 : sizes_.smallGlyphRoom(),
+                sizes_.maxTilePatches != 0, layered ? &planner : nullptr);
   for (uint32_t i = 0; i < info.itemCount && layered; ++i)
     if (auto ok = gather.plan(i, assets[i]); !ok) return ok;
   planner.finish();
@@ -219,16 +219,11 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   } heads{header, {}};
   std::copy_n(gather.firstSlots().begin(), shader::kSlots, heads.slots);
   gather.placePatchTable(sizes_.maxTilePatches);
-  r.constants = {bytes(std::span(&heads, 1), 1),
-                 std::as_bytes(std::span(placements, gather.placements())),
-                 bytes(tables_.sources, gather.sources),
-                 bytes(tables_.shapes, gather.shapes),
-                 bytes(tables_.paints, gather.paints),
-                 bytes(tables_.stops, gather.stops),
-                 bytes(tables_.clips, gather.clips),
-                 bytes(tables_.layers, gather.layers),
-                 bytes(tables_.slots, gather.slots()),
-                 bytes(tables_.patchItems, gather.patchItems)};
+  r.constants = {bytes(std::span(&heads, 1), 1),         std::as_bytes(std::span(placements, gather.placements())),
+                 bytes(tables_.sources, gather.sources), bytes(tables_.shapes, gather.shapes),
+                 bytes(tables_.paints, gather.paints),   bytes(tables_.stops, gather.stops),
+                 bytes(tables_.clips, gather.clips),     bytes(tables_.layers, gather.layers),
+                 bytes(tables_.slots, gather.slots()),   bytes(tables_.patchItems, gather.patchItems)};
 
   if (history) {
     core::Binding& binding = r.bindings[composites ? shader::kBindLayeredHistory : shader::kBindHistory];

@@ -95,7 +95,7 @@ private:
   std::pmr::vector<uint32_t> ends_;          // of segments, by path
   std::pmr::vector<uint32_t> tilePatchEnds_; // of patches, by path
   uint32_t tilePatchTable_ = 0, tileCurveTable_ = 0;
-  std::optional<Kept> kept_;        // where it is editable
+  std::optional<Kept> kept_; // where it is editable
   struct Hit {
     Outlines outlines;
     std::pmr::vector<PathRecord> paths;

@@ -17,9 +17,9 @@ using shader::PlacementRecord;
 ItemTables::ItemTables(const ItemBudgets& budgets, std::pmr::memory_resource* memory)
     : sources(budgets.items, memory), shapes(budgets.shapes, memory), paints(budgets.shapes, memory),
       stops(size_t(budgets.shapes) * 2, memory), clips(budgets.items, memory), layers(budgets.items, memory),
-      patchItems(budgets.items, memory),
-      clipStates(budgets.items, memory), groupStates(budgets.items, memory), assets(maxAssets(budgets), memory),
-      assetSlots(assets.size(), memory), slots(assets.size() + 1 + Gather::kPatchTableSlots, memory),
+      patchItems(budgets.items, memory), clipStates(budgets.items, memory), groupStates(budgets.items, memory),
+      assets(maxAssets(budgets), memory), assetSlots(assets.size(), memory),
+      slots(assets.size() + 1 + Gather::kPatchTableSlots, memory),
       assetCells(std::bit_ceil(2 * assets.size()), memory) {}
 
 bool ItemAsset::layered() const {

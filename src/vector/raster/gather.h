@@ -62,7 +62,8 @@ public:
   /// in others.
   Gather(core::Context& context, const ItemBudgets& budgets, ItemTables& tables, shader::PlacementRecord* placed,
          const GpgpCanvasInfo& info, uint32_t smallGlyphRoom, bool patches, LayerPlanner* planner = nullptr)
-      : patched_(patches), planner_(planner), base_{{0, 0, static_cast<int>(info.width), static_cast<int>(info.height)}, 0, 0},
+      : patched_(patches),
+        planner_(planner), base_{{0, 0, static_cast<int>(info.width), static_cast<int>(info.height)}, 0, 0},
         region_(base_), context_(context), budgets_(budgets), tables_(tables), placed_(placed), info_(info),
         smallGlyphRoom_(smallGlyphRoom) {
     std::fill(tables.assetCells.begin(), tables.assetCells.end(), uint16_t(0));

@@ -115,17 +115,23 @@ inline shader::PatchItemRecord patchItemOf(const Map& map, int middleX, int midd
     }
   const auto narrow = [](double v) { return static_cast<float>(v); };
   const auto forward = [&](int r, double w) {
-    return shader::vec4(narrow(m[r][0]), narrow(m[r][1]),
-                        narrow(m[r][2] + m[r][0] * origin[0] + m[r][1] * origin[1]), narrow(w));
+    return shader::vec4(narrow(m[r][0]), narrow(m[r][1]), narrow(m[r][2] + m[r][0] * origin[0] + m[r][1] * origin[1]),
+                        narrow(w));
   };
   const auto back = [&](int r, double w) {
     const double at = r < 2 ? origin[r] : 0;
     return shader::vec4(narrow(inverse[r][0] - at * inverse[2][0]), narrow(inverse[r][1] - at * inverse[2][1]),
                         narrow(inverse[r][2] - at * inverse[2][2]), narrow(w));
   };
-  return {back(0, origin[0]), back(1, origin[1]), back(2, map.projective() ? 1 : 0),
-          forward(0, mx),     forward(1, my),     forward(2, 0),
-          0,                  0,                  0,
+  return {back(0, origin[0]),
+          back(1, origin[1]),
+          back(2, map.projective() ? 1 : 0),
+          forward(0, mx),
+          forward(1, my),
+          forward(2, 0),
+          0,
+          0,
+          0,
           0};
 }
 
