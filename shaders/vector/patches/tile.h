@@ -157,6 +157,8 @@ GPGP_FN uvec4 patchTiles(TilePatchRecord patch_, PatchItemRecord m, float near, 
       px = divide(px, w);
       py = divide(py, w);
     }
+    px = settle(px);
+    py = settle(py);
     low = vec2(min(low.x, px), min(low.y, py));
     high = vec2(max(high.x, px), max(high.y, py));
   }

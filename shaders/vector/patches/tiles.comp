@@ -39,11 +39,12 @@ void list(uint limit, uint place, uint task, uint x, uint y, uint what) {
 
 void main() {
   const PatchTableRecord table = patchTable();
-  const uint lane = gl_LocalInvocationID.x, group = table.groupPatches;
+  const uint lane = gl_LocalInvocationID.x;
 #if BLOCKS
   const uint count = min(counters.patchBlocks, kPatchBlocks);
+  const uint group = clamp((count + gl_NumWorkGroups.x - 1) / gl_NumWorkGroups.x, 1, 16);
 #else
-  const uint count = table.patches;
+  const uint count = table.patches, group = table.groupPatches;
 #endif
   const uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y * group;
   for (uint base = groupIndex() * group; base < count; base += stride) {
