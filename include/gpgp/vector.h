@@ -161,6 +161,9 @@ typedef struct GpgpPathGroup {
 typedef uint64_t GpgpDrawingMethods;
 #define GPGP_DRAWING_FLATTENED ((GpgpDrawingMethods)1) /**< outlines, which canvases flatten and rasterise */
 #define GPGP_DRAWING_IN_PASS ((GpgpDrawingMethods)2)   /**< CPatches in cells, for gpgpRecordDrawPatches */
+/** CPatches for canvases whose method is GPGP_CANVAS_PATCHES; with GPGP_DRAWING_FLATTENED, and for drawings alone. They
+ *  are made with the drawing, not baked. */
+#define GPGP_DRAWING_PATCHES ((GpgpDrawingMethods)4)
 
 /* ---------------------------------------------------------------- compiler (libgpgp_compiler) */
 
@@ -437,6 +440,17 @@ typedef uint64_t GpgpCanvasTargets;
 /** A target in R16G16B16A16_SFLOAT. */
 #define GPGP_CANVAS_TARGET_RGBA16F ((GpgpCanvasTargets)4)
 
+/** How a canvas finds which samples a drawing's paths cover. */
+typedef int32_t GpgpCanvasMethod;
+enum {
+  /** Outlines are flattened to lines within 1/32 of a pixel. */
+  GPGP_CANVAS_FLATTENED = 0,
+  /** Drawings made with GPGP_DRAWING_PATCHES are drawn by their CPatches: the implicit forms of the curves decide every
+   *  sample, without approximation. Other drawings, text and shapes are flattened, in the same painting order. With
+   *  GpgpCanvasInfo::exactArea a pixel's area is that of 256 samples. */
+  GPGP_CANVAS_PATCHES = 1
+};
+
 /** Budgets of a canvas. Its scratch memory follows from them. When a budget is exceeded, the first thing in painting
  *  order that does not fit and everything painted after it are left out. The report says what everything would have
  *  needed. */
@@ -482,6 +496,11 @@ typedef struct GpgpCanvasCreateInfo {
   /** Operations on these pictures in one recording, at most 65536; 0: 1024. A layer takes one, a step of a filter one
    * to five. Each takes 304 bytes for every recording that can be in flight. */
   uint32_t maxLayerOperations;
+  GpgpCanvasMethod method; /**< 0: GPGP_CANVAS_FLATTENED */
+  /** GPGP_CANVAS_PATCHES: pairs of a CPatch and a tile that its curves pass through, at most 2^28; 0: twice
+   *  maxTileEntries. Each takes 16 bytes. Where they do not suffice, the first drawing that is drawn by patches and
+   *  everything painted after it are left out. */
+  uint32_t maxTilePatches;
 } GpgpCanvasCreateInfo;
 #define GPGP_CANVAS_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO)
 
@@ -686,6 +705,8 @@ typedef struct GpgpCanvasReport {
   uint32_t layerPixelsGiven;     /**< maxLayerPixels */
   uint32_t layerOperations;      /**< needed */
   uint32_t layerOperationsGiven; /**< maxLayerOperations; 0 without maxLayerPixels */
+  uint32_t tilePatches;          /**< needed by the paths that got tile words */
+  uint32_t tilePatchesGiven;     /**< maxTilePatches; 0 with GPGP_CANVAS_FLATTENED */
 } GpgpCanvasReport;
 #define GPGP_CANVAS_REPORT_INIT GPGP_INIT(GpgpCanvasReport, GPGP_STRUCTURE_CANVAS_REPORT)
 

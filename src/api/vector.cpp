@@ -13,8 +13,11 @@ using namespace gpgp::vector;
 
 namespace {
 Result<void> checkMethods(GpgpDrawingMethods methods) {
-  if (methods & ~(GPGP_DRAWING_FLATTENED | GPGP_DRAWING_IN_PASS))
+  if (methods & ~(GPGP_DRAWING_FLATTENED | GPGP_DRAWING_IN_PASS | GPGP_DRAWING_PATCHES))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "methods has unknown bits");
+  if ((methods & GPGP_DRAWING_PATCHES) && !(methods & GPGP_DRAWING_FLATTENED))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                     "methods has GPGP_DRAWING_PATCHES without GPGP_DRAWING_FLATTENED, which canvases need as well");
   return {};
 }
 } // namespace
@@ -99,6 +102,8 @@ GpgpResult GPGP_CALL gpgpCreateGlyphSet(GpgpContext handle, const GpgpGlyphSetCr
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_GLYPH_SET_CREATE_INFO, "info"); !ok) return ok;
     if (!glyphSet) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "glyphSet is NULL");
     if (info->data && info->filePath) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "both data and filePath are given");
+    if (info->methods & GPGP_DRAWING_PATCHES)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "glyph sets have no GPGP_DRAWING_PATCHES: canvases flatten text");
     if (auto ok = checkMethods(info->methods); !ok) return ok;
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     std::pmr::memory_resource* memory = &(*context)->host();
@@ -195,6 +200,10 @@ GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext handle, const GpgpCanvasCreate
     if (info->maxLayerOperations > 65536)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxLayerOperations is %u; at most 65536",
                        info->maxLayerOperations);
+    if (info->method < GPGP_CANVAS_FLATTENED || info->method > GPGP_CANVAS_PATCHES)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "method is %d", info->method);
+    if (info->maxTilePatches > 1u << 28)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTilePatches is %u; at most 268435456", info->maxTilePatches);
     auto made = Canvas::create(**context, *info);
     if (!made) return made.error();
     *canvas = adopt<GpgpRecorder>(**context, std::move(*made));

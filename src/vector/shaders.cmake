@@ -104,6 +104,13 @@ gpgp_vector_shader(fill_rows fill/fill_rows.comp DEFINES ONE_DRAWING=1 SCISSORS=
 gpgp_vector_shader(fill_rows_one fill/fill_rows.comp DEFINES ONE_DRAWING=1)
 gpgp_vector_shader(fill_rows_sixteen fill/fill_rows.comp DEFINES ONE_DRAWING=1 SAMPLES=16)
 
+gpgp_vector_shader(patch_tiles patches/tiles.comp DEFINES ONE_DRAWING=0 BLOCKS=0)
+gpgp_vector_shader(patch_tiles_one patches/tiles.comp DEFINES ONE_DRAWING=1 BLOCKS=0)
+gpgp_vector_shader(patch_blocks patches/tiles.comp DEFINES ONE_DRAWING=0 BLOCKS=1)
+gpgp_vector_shader(patch_blocks_one patches/tiles.comp DEFINES ONE_DRAWING=1 BLOCKS=1)
+gpgp_vector_shader(patch_fill patches/fill.comp DEFINES ONE_DRAWING=0)
+gpgp_vector_shader(patch_fill_one patches/fill.comp DEFINES ONE_DRAWING=1)
+
 # What a tile may hold: plain colours; gradients; all of it (groups, clips, projective items); images beside either.
 set(plain PAINTS=0 ONE_DRAWING=1)
 set(paints PAINTS=1 ONE_DRAWING=0)

@@ -6,7 +6,7 @@
 
 namespace gpgp::test {
 
-core::PassList canvasPasses(bool software);
+core::PassList canvasPasses(bool software, bool patches = false);
 core::PassList visibilityPasses();
 core::PassList atlasPasses();
 core::PassList spawnPasses(bool vertices);

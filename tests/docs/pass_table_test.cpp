@@ -1,13 +1,14 @@
-// docs/internals/passes.md lists what each pass reads and writes. It is made from the pass lists that recorders are
-// made from, and this test fails where it is out of date:
+// docs/internals/passes.md and vector_passes.md list what each pass reads and writes. They are made from the pass lists
+// that recorders are made from, and this test fails where they are out of date:
 //
 //   pass_table_test          compares
-//   pass_table_test --write  writes it
+//   pass_table_test --write  writes them
 #include "pass_lists.h"
 
 #include "host/files.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -73,10 +74,12 @@ std::string joined(const std::set<std::string>& names) {
   return text.empty() ? "–" : text;
 }
 
-std::string tableOf(const core::PassList& list, const ShaderFiles& files) {
+/// `only`: passes whose name begins so.
+std::string tableOf(const core::PassList& list, const ShaderFiles& files, const char* only = "") {
   std::vector<Row> rows;
   for (const core::Pass& pass : list.passes) {
     const std::string name = withoutForm(pass.name);
+    if (!name.starts_with(only)) continue;
     const bool fills = pass.kind == core::PassKind::fill;
     const std::string file = fills ? "(fill)" : files.of(list.shaders[pass.shader]);
     auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.name == name && r.file == file; });
@@ -118,38 +121,55 @@ std::string interpreters(const ShaderFiles& files) {
   return text;
 }
 
-std::string page() {
+/// Passes and vector_passes.
+std::array<std::string, 2> pages() {
   const ShaderFiles files;
-  return "# Passes\n\n"
-         "Each recorder has a list of passes. From it come barriers, scratch, labels and timestamps.\n"
-         "`pass_table_test --write` makes these tables; the test compares them. Files lie\n"
-         "below `shaders/`. Forms of a pass, of which a recording runs one, share a row, and so do passes of one\n"
-         "file with the same resources. What they do is in [spawn](spawn.md), [vector](vector.md),\n"
-         "[visibility](visibility.md) and [atlas](atlas.md).\n\n"
-         "## Spawn\n\nOf ordered instances, with colliders:\n\n" +
-         tableOf(test::spawnPasses(false), files) + "\nOf ordered vertices:\n\n" +
-         tableOf(test::spawnPasses(true), files) +
-         "\nForms of the interpreter, which pass `derive` runs for grammars without a kernel:\n\n" +
-         interpreters(files) + "\n## Vector\n\n" + tableOf(test::canvasPasses(false), files) +
-         "\n### On software devices\n\n" + tableOf(test::canvasPasses(true), files) +
-         "\n## Visibility\n\nWith all methods. Without 64-bit atomics there are passes `ids`, too.\n\n" +
-         tableOf(test::visibilityPasses(), files) + "\n### Shading atlas\n\n" + tableOf(test::atlasPasses(), files);
+  const std::string vector =
+      "# Passes of the vector service\n\n"
+      "The tables of [Passes](passes.md) for canvases. `pass_table_test --write` makes them, too. What the passes do "
+      "is\n"
+      "in [vector](vector.md) and [patches](patches.md).\n\n"
+      "## On hardware, and with `GPGP_CANVAS_PATCHES` on every device\n\n" +
+      tableOf(test::canvasPasses(false), files) +
+      "\nWith `GPGP_CANVAS_PATCHES` also, tiles and blocks beside and behind mark, fill beside fill:\n\n" +
+      tableOf(test::canvasPasses(false, true), files, "patch ") + "\n## On software devices\n\n" +
+      tableOf(test::canvasPasses(true), files);
+  return {"# Passes\n\n"
+          "Each recorder has a list of passes. From it come barriers, scratch, labels and timestamps.\n"
+          "`pass_table_test --write` makes these tables; the test compares them. Files lie\n"
+          "below `shaders/`. Forms of a pass, of which a recording runs one, share a row, and so do passes of one\n"
+          "file with the same resources. What they do is in [spawn](spawn.md), [visibility](visibility.md) and\n"
+          "[atlas](atlas.md). Those of canvases are in [vector passes](vector_passes.md).\n\n"
+          "## Spawn\n\nOf ordered instances, with colliders:\n\n" +
+              tableOf(test::spawnPasses(false), files) + "\nOf ordered vertices:\n\n" +
+              tableOf(test::spawnPasses(true), files) +
+              "\nForms of the interpreter, which pass `derive` runs for grammars without a kernel:\n\n" +
+              interpreters(files) +
+              "\n## Visibility\n\nWith all methods. Without 64-bit atomics there are passes `ids`, too.\n\n" +
+              tableOf(test::visibilityPasses(), files) + "\n### Shading atlas\n\n" +
+              tableOf(test::atlasPasses(), files),
+          vector};
 }
 } // namespace
 
 int main(int count, char** arguments) try {
-  const char* path = GPGP_DOCS "/internals/passes.md";
-  const std::string text = page();
-  if (count > 1 && !std::strcmp(arguments[1], "--write")) {
-    std::ofstream(path) << text;
-    return 0;
+  const bool writes = count > 1 && !std::strcmp(arguments[1], "--write");
+  const std::array<std::string, 2> texts = pages();
+  int stale = 0;
+  for (size_t i = 0; i < texts.size(); ++i) {
+    const char* path = i == 0 ? GPGP_DOCS "/internals/passes.md" : GPGP_DOCS "/internals/vector_passes.md";
+    if (writes) {
+      std::ofstream(path) << texts[i];
+      continue;
+    }
+    std::ifstream file(path);
+    std::stringstream found;
+    found << file.rdbuf();
+    if (found.str() == texts[i]) continue;
+    std::fprintf(stderr, "%s is out of date: run pass_table_test --write\n", path);
+    stale = 1;
   }
-  std::ifstream file(path);
-  std::stringstream found;
-  found << file.rdbuf();
-  if (found.str() == text) return 0;
-  std::fprintf(stderr, "%s is out of date: run pass_table_test --write\n", path);
-  return 1;
+  return stale;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 1;

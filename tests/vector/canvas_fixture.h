@@ -34,6 +34,8 @@ struct CanvasTest : DeviceTest {
   GpgpRecorder canvas = nullptr;
   bool exactArea = false, blendSrgb = false, encodeSrgb = false;
   std::vector<GpgpCanvasImage> images;
+  GpgpDrawingMethods drawingMethods = 0;                        ///< of the drawings that are made
+  GpgpCanvasMethod canvasMethod = GPGP_CANVAS_FLATTENED;        ///< of the canvases
   GpgpCanvasTargets canvasTargets = GPGP_CANVAS_TARGET_RGBA16F; ///< of the canvases that are made
 
   void makeCanvas(uint32_t size = 512, uint32_t entries = 0, uint32_t paths = 0,
@@ -44,12 +46,14 @@ struct CanvasTest : DeviceTest {
     info.maxTileEntries = entries;
     info.maxPaths = paths ? paths : 65536;
     info.targets = canvasTargets;
+    info.method = canvasMethod;
     canvas = recorder(gpgpCreateCanvas, info, target);
   }
   GpgpAsset makeDrawing(const std::vector<GpgpPath>& paths) {
     GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
     info.paths = paths.data();
     info.pathCount = static_cast<uint32_t>(paths.size());
+    info.methods = drawingMethods;
     GpgpAsset drawing = nullptr;
     EXPECT_EQ(gpgpCreateDrawing(context, &info, &drawing), GPGP_SUCCESS) << lastMessage();
     return drawing;
@@ -61,6 +65,7 @@ struct CanvasTest : DeviceTest {
     info.pathCount = static_cast<uint32_t>(paths.size());
     info.groups = groups.data();
     info.groupCount = static_cast<uint32_t>(groups.size());
+    info.methods = drawingMethods;
     GpgpAsset drawing = nullptr;
     EXPECT_EQ(gpgpCreateDrawing(context, &info, &drawing), expected) << lastMessage();
     return drawing;

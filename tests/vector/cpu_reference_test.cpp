@@ -7,6 +7,7 @@
 #include "random_record.h"
 #include "vector/cpu_reference/cpu_reference.h"
 #include "vector/passes/names.h"
+#include "vector/patch/patches.h"
 #include "vector/raster/canvas.h"
 #include "vector/shared/entry.h"
 
@@ -46,6 +47,8 @@ struct CpuTest : CanvasTest {
   RandomPaths glyphPaths;
   std::map<const core::Resident*, std::vector<vec4>> tables; ///< what lies in the device's buffers
 
+  /// Whether the canvas has the passes of software devices.
+  bool software() const { return ownContext().device.software && canvasMethod == GPGP_CANVAS_FLATTENED; }
   core::Context& ownContext() const { return *reinterpret_cast<core::Context*>(context); }
 
   void SetUp() override {
@@ -60,6 +63,7 @@ struct CpuTest : CanvasTest {
     info.maxGlyphs = kGlyphs;
     info.maxShapes = kShapes;
     info.targets = GPGP_CANVAS_TARGET_RGBA8 | GPGP_CANVAS_TARGET_RGBA16F;
+    info.method = canvasMethod;
     canvas = recorder(gpgpCreateCanvas, info);
     VkDeviceSize bytes = 0;
     ASSERT_EQ(gpgpGetScratchSize(canvas, &bytes, nullptr, nullptr), GPGP_SUCCESS);
@@ -124,6 +128,16 @@ struct CpuTest : CanvasTest {
     std::vector<vec4>& table = tables[static_cast<const vector::DrawingAsset*>(api::objectOf(drawing, &owner))];
     table.assign(packed.bytes.size() / sizeof(vec4), {});
     std::memcpy(table.data(), packed.bytes.data(), packed.bytes.size());
+    if (drawingMethods & GPGP_DRAWING_PATCHES) {
+      const auto patches = vector::makeTilePatches(*converted, memory);
+      EXPECT_TRUE(patches);
+      const auto append = [&](const auto& records) {
+        const auto* first = reinterpret_cast<const vec4*>(records.data());
+        table.insert(table.end(), first, first + records.size() * sizeof records[0] / sizeof(vec4));
+      };
+      append(patches->patches);
+      append(patches->curves);
+    }
     return drawing;
   }
 
@@ -348,9 +362,9 @@ struct CpuTest : CanvasTest {
   };
   void gather(const RandomRecord& record, const CanvasHeader& header, Given& given) {
     const GpgpCanvasInfo info = infoOf(record);
-    const bool software = ownContext().device.software;
+    const bool onSoftware = software();
     vector::Gather gather(ownContext(), {kItems, kGlyphs, kShapes, kPatches}, given.itemTables, given.placements.data(),
-                          info, software ? 0 : kEntries / 2);
+                          info, onSoftware ? 0 : kEntries / 2, canvasMethod == GPGP_CANVAS_PATCHES);
     for (uint32_t i = 0; i < info.itemCount; ++i) {
       api::Call call{"cpu"};
       const auto asset = api::resolveItem(call, info.items[i], i, ownContext());
@@ -373,6 +387,9 @@ struct CpuTest : CanvasTest {
     add(given.itemTables.stops, gather.stops);
     add(given.itemTables.clips, gather.clips);
     add(given.itemTables.layers, gather.layers);
+    gather.placePatchTable(2 * kEntries);
+    add(given.itemTables.slots, gather.slots());
+    add(given.itemTables.patchItems, gather.patchItems);
     vector::CpuInput& input = given.input;
     input.header = header;
     input.assets.push_back({given.itemTables.slots[0], given.shapes});
@@ -431,7 +448,7 @@ struct CpuTest : CanvasTest {
   CpuCoverage decode(std::span<const uint32_t> entry, uint32_t x, uint32_t y, uint32_t whole) const {
     const uint32_t* row = entry.data() + y * (kTileSize / 2);
     const auto four = [](const uint32_t* words) { return shader::uvec4(words[0], words[1], words[2], words[3]); };
-    if (!ownContext().device.software)
+    if (!software())
       return {shader::foldRow(four(row), x) ^ whole, shader::differenceAt(four(row + shader::kEntryWords / 2), x)};
     CpuCoverage found{whole, static_cast<int>(entry[y * kTileSize + x]) >> 16};
     for (uint32_t k = 0; k <= x; ++k) found.mask ^= entry[y * kTileSize + k] & 0xffff;
@@ -492,10 +509,10 @@ struct CpuTest : CanvasTest {
     const CanvasHeader& header = given.input.header;
     const uint32_t tiles = header.tilesX * header.tilesY,
                    binsEnd = shader::kFirstBin + header.binCount * header.binWords;
-    const bool software = ownContext().device.software;
+    const bool onSoftware = software();
     const uint32_t firstList = (binsEnd + 3) & ~3u;
-    const auto bins = read<uint32_t>("bins", software ? firstList + tiles * (header.listWords + 3)
-                                                      : binsEnd + 2 * tiles + left.counters.listed);
+    const auto bins = read<uint32_t>("bins", onSoftware ? firstList + tiles * (header.listWords + 3)
+                                                        : binsEnd + 2 * tiles + left.counters.listed);
     const auto binned = vector::binOnCpu(given.input, places);
     for (uint32_t bin = 0; bin < header.binCount; ++bin) {
       const uint32_t* head = &bins[shader::kFirstBin + bin * header.binWords];
@@ -503,11 +520,11 @@ struct CpuTest : CanvasTest {
       for (uint32_t i = header.pathCount; i > 0; --i)
         if (head[shader::kBinHead + (i - 1) / 32] >> ((i - 1) & 31) & 1) found.push_back(i - 1);
       ASSERT_EQ(found, binned[bin]) << "bin " << bin;
-      if (software || head[0] == 0) continue;
+      if (onSoftware || head[0] == 0) continue;
       const std::vector<uint32_t> listed(&bins[head[1]], &bins[head[1]] + head[0] - 1);
       ASSERT_EQ(listed, binned[bin]) << "list of bin " << bin;
     }
-    if (!software) {
+    if (!onSoftware) {
       if ((header.flags & shader::kSplitRich) == 0) return;
       const std::vector<bool> rich = vector::splitOnCpu(given.input, places);
       for (uint32_t tile = 0; tile < tiles; ++tile)
@@ -563,7 +580,7 @@ struct CpuTest : CanvasTest {
       ++compared;
     }
   }
-  size_t doubted = 0, compared = 0;
+  size_t doubted = 0, compared = 0, patched = 0; ///< pixels, and records with items that patches draw
 
   /// All of that for one record, whose drawings it destroys.
   void check(const RandomRecord& record) {
@@ -572,6 +589,7 @@ struct CpuTest : CanvasTest {
     Given given;
     gather(record, left.header, given);
     if (HasFatalFailure()) return;
+    patched += left.header.patchTable != 0;
     const CpuPlaces places = vector::placeOnCpu(given.input);
     std::vector<PlacedPath> paths;
     if (!given.alone) {
@@ -582,6 +600,14 @@ struct CpuTest : CanvasTest {
     }
     if (!HasFatalFailure()) checkPicture(record, given, places, left);
     for (const GpgpAsset drawing : record.drawings) gpgpDestroyAsset(drawing);
+  }
+};
+
+/// The same where patches draw the drawings, beside texts and lists that are flattened.
+struct PatchCpuReferenceTest : CpuTest {
+  PatchCpuReferenceTest() {
+    canvasMethod = GPGP_CANVAS_PATCHES;
+    drawingMethods = GPGP_DRAWING_FLATTENED | GPGP_DRAWING_PATCHES;
   }
 };
 
@@ -664,6 +690,16 @@ TEST_F(CpuTest, RandomRecordsAreWhatTheCpuReferenceSays) {
   }
   // Where gradients begin anew or nearest texels meet, a pixel's colour is open.
   EXPECT_LT(doubted * 50, compared);
+}
+
+TEST_F(PatchCpuReferenceTest, RandomRecordsAreWhatTheCpuReferenceSays) {
+  const uint32_t first = numberFrom("GPGP_TEST_FIRST_SEED", 0), count = numberFrom("GPGP_TEST_SEEDS", 12);
+  for (uint32_t seed = first; seed < first + count && !HasFatalFailure(); ++seed) {
+    RandomRecord record;
+    makeRecord(seed, record);
+    check(record);
+  }
+  EXPECT_GT(patched, count / 2);
 }
 
 TEST_F(PageCpuReferenceTest, PagesAreWhatTheCpuReferenceSays) {

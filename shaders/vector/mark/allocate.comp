@@ -14,6 +14,7 @@ layout(local_size_x = 64) in;
 #if !SOFTWARE
 layout(set = 0, binding = kBindEntries, std430) coherent buffer Entries { uvec4 entries[]; };
 #include "vector/shared/flat_segments.glsl"
+layout(set = 0, binding = kBindShapes, std430) readonly buffer Shapes { vec4 shapes[]; };
 shared uint start;
 shared bool last;
 
@@ -58,8 +59,24 @@ void main() {
     counters.fillY = (groups + 32767) / 32768;
     counters.fillZ = clamp(4096 / groups, 1, 16);
   }
+  if (lane == 0 && header.patchTable != 0) {
+    const bool fits = counters.tilePatches <= floatBitsToUint(shapes[header.patchTable].w);
+    const uint groups = fits ? (counters.tilePatches + kFillPatches - 1) / kFillPatches : 0;
+    counters.patchesX = min(groups, 32768);
+    counters.patchesY = (groups + 32767) / 32768;
+    counters.patchesZ = 1;
+    if (!fits) { // which of them are listed, chance has decided: all are left out, and what lies over them
+      const uint cut = wholeItems(min(counters.cutPath, floatBitsToUint(shapes[header.patchTable + 1].x)));
+      counters.cutPath = cut;
+      counters.pathsDropped = header.pathsDropped + header.pathCount - cut;
+    }
+  }
+  barrier();
 #endif
   if (counters.entries <= header.entryLimit) return;
+#if !SOFTWARE
+  memoryBarrierBuffer();
+#endif
   const uint pathEnd = counters.cutPath;
   uint cut = pathEnd, used = 0;
   for (uint first = 0; first < pathEnd && cut == pathEnd; first += 64) {

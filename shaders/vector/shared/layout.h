@@ -24,6 +24,8 @@ GPGP_CONST int kBindFlatSegments = 26;
 GPGP_CONST int kBindRows = 27;
 GPGP_CONST int kBindShapes = 28;
 GPGP_CONST int kBindAside = 29;
+GPGP_CONST int kBindPatchBlocks = 33; // behind those of layers (layers/operation.h)
+GPGP_CONST int kBindTilePatches = 34;
 
 // A curve of a drawing: a cubic that never turns in x or y, from its top point down (lines and quadratics elevated).
 // Control points are relative to the start, which keeps their low bits.
@@ -191,7 +193,7 @@ struct CanvasHeader {
   uint zero;                         // 0, which no compiler knows (raster.comp)
   uint layerPixels, layerOperations; // needed
   uint assets;                       // where the SlotRecords begin, in vec4
-  uint pad0;
+  uint patchTable;                   // where the PatchTableRecord lies, in vec4; 0: patches draw no item
   vec4 background;
 };
 
@@ -215,6 +217,47 @@ struct CanvasCounters {
   uint rowsTaken;              // of tiles, by fill on software devices
   uint ended;                  // 1: the device has ended loops before their time (core/turns.h)
   uint layerPixels, layerOperations; // needed
+  uint patchBlocks;                  // listed: squares of 8 x 8 tiles that a patch's curves pass
+  uint tilePatches;                  // needed: patches in tiles that their curves pass
+  uint patchesX, patchesY, patchesZ; // workgroups of the pass that fills from them
+  uint pad0, pad1, pad2;
+};
+
+// A CPatch (patches/tile.h) of a drawing's table: the box that it lies in: left, top, right, bottom; up to
+// kMaxTileCurves curves, by number (gpgp/shaders/patches.h), those on the left first.
+struct TilePatchRecord {
+  vec4 box;
+  uvec4 curves;
+  uint curveCount, lefts;
+  uint path; // in the drawing
+  uint pad0;
+};
+
+// Before the PatchItemRecords of a recording.
+struct PatchTableRecord {
+  uint items, patches; // how many there are
+  uint groupPatches;   // of a workgroup
+  uint limit;          // patches in tiles, at most
+  uint firstPath;      // of the first item
+  uint pad0, pad1, pad2;
+};
+
+// An item that patches draw. Points of the drawing count from an origin near to what the canvas shows, pixels from one
+// near to its middle.
+struct PatchItemRecord {
+  vec4 inverse0, inverse1, inverse2; // pixel to drawing: x w, y w and w are the sums of x, y, z times the pixel's
+                                     // coordinates and 1; .w: the origin's x and y; 1: projective
+  vec4 forward0, forward1, forward2; // drawing to pixel, the same; .w: the middle's x and y
+  uint item, firstPatch;             // of the recording
+  uint patches, curves;              // where they begin in the slot's buffer, in vec4
+};
+
+// A patch's square of tiles, or single tile, that its curves pass.
+struct PatchPlaceRecord {
+  uint path;   // of the recording
+  uint place;  // tile, y in the upper half; of squares the first one's
+  uint record; // vec4 of its TilePatchRecord
+  uint what;   // curves and edges (kPatchRows...) that pass, and from kPatchItemBit on the PatchItemRecord
 };
 
 // A flattened segment between mark and fill.
@@ -275,6 +318,10 @@ GPGP_CONST uint kTileListWords = 32u;
 GPGP_CONST uint kTileListPaths = 15u;
 GPGP_CONST uint kBinHead = 3u;    // 0, or 1 + how many paths the bin has as a list (pack.comp); where that lies; and:
 GPGP_CONST uint kBinGrouped = 2u; // 1: one of its paths may need the general shader
+GPGP_CONST uint kMaxTileCurves = 4u;                          // of a TilePatchRecord
+GPGP_CONST uint kPatchBlockTiles = 8u, kPatchBlocks = 65536u; // side of a square; room for as many
+GPGP_CONST uint kPatchItemBit = 8u;
+GPGP_CONST uint kFillPatches = 4u;             // of a workgroup of patches/fill.comp
 GPGP_CONST uint kEntryPatch = (1u << 29) - 1u; // patches of a drawing, at most
 
 // How many segments lie between those of the table of first items.
@@ -291,7 +338,9 @@ static_assert(sizeof(gpgp::shader::ItemRecord) == 160 && sizeof(gpgp::shader::Sh
               sizeof(gpgp::shader::ClipRecord) == 16 && sizeof(gpgp::shader::LayerRecord) == 16 &&
               sizeof(gpgp::shader::SlotRecord) == 16 && sizeof(gpgp::shader::PlacementRecord) == 48 &&
               sizeof(gpgp::shader::BoxedPath) == 48 && sizeof(gpgp::shader::TileWord) == 16 &&
-              sizeof(gpgp::shader::CanvasHeader) == 160 && sizeof(gpgp::shader::CanvasCounters) == 128 &&
+              sizeof(gpgp::shader::CanvasHeader) == 160 && sizeof(gpgp::shader::CanvasCounters) == 160 &&
+              sizeof(gpgp::shader::TilePatchRecord) == 48 && sizeof(gpgp::shader::PatchItemRecord) == 112 &&
+              sizeof(gpgp::shader::PatchPlaceRecord) == 16 && sizeof(gpgp::shader::PatchTableRecord) == 32 &&
               sizeof(gpgp::shader::FlatSegmentRecord) == 24);
 #endif
 #endif

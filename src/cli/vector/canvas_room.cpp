@@ -45,10 +45,13 @@ std::optional<Canvas> largerCanvas(Session& session, GpgpCanvasCreateInfo& info,
       next.maxTileEntries = wanted(report.tileEntries, report.tileEntriesGiven, (eighths - ofWords) / 8.0);
       next.maxTileWords = wanted(report.tileWords, report.tileWordsGiven, ofWords / 8.0);
       next.maxDrawings = std::max(info.maxDrawings, std::min(report.items, 65536u));
+      if (report.tilePatches > report.tilePatchesGiven)
+        next.maxTilePatches = std::min(report.tilePatches + report.tilePatches / 8, 1u << 28);
       if (report.layerPixels != UINT32_MAX) // which no budget holds
         next.maxLayerPixels = std::max(info.maxLayerPixels, std::min(report.layerPixels, 1u << 28));
       next.maxLayerOperations = std::max(info.maxLayerOperations, std::min(report.layerOperations, 65536u));
-      const bool layers = next.maxDrawings > report.itemsGiven || next.maxLayerPixels > report.layerPixelsGiven ||
+      const bool layers = next.maxTilePatches > report.tilePatchesGiven || next.maxDrawings > report.itemsGiven ||
+                          next.maxLayerPixels > report.layerPixelsGiven ||
                           next.maxLayerOperations > report.layerOperationsGiven;
       if (!layers && next.maxTileEntries == report.tileEntriesGiven && next.maxTileWords == report.tileWordsGiven)
         continue;
@@ -73,6 +76,10 @@ std::string omitted(const GpgpCanvasReport& report, uint32_t paths, bool said) {
       std::to_string(report.pathsDropped) + " of " + std::to_string(paths) + " paths were left out";
   if (report.layerOperations && !words && report.tileEntries <= report.tileEntriesGiven)
     return text + ": the device has no room for all layers side by side; a smaller --size needs less";
+  if (report.tilePatches > report.tilePatchesGiven)
+    return text + ": their patches pass " + std::to_string(report.tilePatches) +
+           " tiles, and the device has room for " + std::to_string(report.tilePatchesGiven) +
+           "; a smaller --size needs fewer";
   if (said) // as many words come with them
     return text + "; --max-tile-entries " + std::to_string(std::max(report.tileEntries, words ? report.tileWords : 0)) +
            " would hold them, or somewhat more";

@@ -138,7 +138,7 @@ Outcome lottie(const VectorOptions& options, const CommonOptions& common, const 
     if (asked) throw Failure(name + ": " + option + " is not for animations");
   };
   refuse(options.reference, "--reference");
-  refuse(options.method == "in-pass", "--method in-pass");
+  refuse(options.method != "flattened", "--method other than flattened");
   refuse(options.tilt != 0, "--tilt");
   refuse(options.zoom != 1 || !options.center.empty(), "--zoom or --center");
   refuse(!options.stages.empty(), "--stages");

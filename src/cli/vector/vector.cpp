@@ -211,6 +211,8 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   drawingInfo.label = name.c_str();
   drawingInfo.data = blob->data();
   drawingInfo.size = blob->size();
+  const bool patches = options.method == "patches";
+  if (patches) drawingInfo.methods = GPGP_DRAWING_FLATTENED | GPGP_DRAWING_PATCHES;
   const Drawing drawing = session.take(Drawing::create(session.context(), drawingInfo), "gpgpCreateDrawing");
   const GpgpDrawingInfo facts = session.take(drawing.info(), "gpgpGetDrawingInfo");
   if (!(facts.viewport[2] > 0) || !(facts.viewport[3] > 0)) throw Failure(name + ": the drawing has no extent");
@@ -246,6 +248,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   canvasInfo.maxPaths = std::max(facts.paths, 1024u);
   canvasInfo.maxTileEntries = options.maxTileEntries;
   canvasInfo.targets = GPGP_CANVAS_TARGET_RGBA8;
+  canvasInfo.method = patches ? GPGP_CANVAS_PATCHES : GPGP_CANVAS_FLATTENED;
   const auto table = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
                                              std::pmr::get_default_resource());
   if (!table) throw Failure(table.error().text);
@@ -300,8 +303,8 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
        << size.width << " x " << size.height << " pixels"
        << (shrink < 1 ? " (shrunk to them; --size makes more), " : ", ") << antialiasing.samples
        << (antialiasing.area ? " samples and exact areas each, " : " samples each, ") << report.tileEntries
-       << " tile entries; GPU " << milliseconds(times.median()) << " (median of " << times.totals.size() << ") on "
-       << device.name() << '\n';
+       << " tile entries" << (patches ? " of " + std::to_string(report.tilePatches) + " patches" : "") << "; GPU "
+       << milliseconds(times.median()) << " (median of " << times.totals.size() << ") on " << device.name() << '\n';
   if (facts.paths == 0) text << "nothing is drawn: the drawing has no shape with an area or a stroke\n";
   if (messages.count()) text << messages.count() << " parts of the drawing are approximated, left out or not valid\n";
   if (options.reference) text << psnr << " dB against 256 samples a pixel by winding numbers\n";
@@ -327,6 +330,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
                   {"messages", messages.json()},
                   {"curves_per_patch", tiles.curvesPerPatch},
                   {"tile_entries", report.tileEntries},
+                  {"tile_patches", report.tilePatches},
                   {"patches_per_tile", tiles.patchesPerTile},
                   {"curves_per_patch_tiled", tiles.curvesPerPatchTiled},
                   {"parse_ms", converted.parseMilliseconds},
@@ -364,10 +368,12 @@ Work addVector(CLI::App& app) {
           "area")
       ->check(CLI::IsMember({"1", "4", "8", "16", "area"}));
   command
-      ->add_option("--method", options->method,
-                   "flattened: rasterised into a picture; in-pass: drawn as geometry inside a render pass, with exact "
-                   "coverage or as many samples as --aa says")
-      ->check(CLI::IsMember({"flattened", "in-pass"}))
+      ->add_option(
+          "--method", options->method,
+          "flattened: outlines rasterised into a picture; patches: the same from CPatches, whose implicit forms "
+          "decide every sample; in-pass: drawn as geometry inside a render pass, with exact "
+          "coverage or as many samples as --aa says")
+      ->check(CLI::IsMember({"flattened", "patches", "in-pass"}))
       ->capture_default_str();
 #ifdef GPGP_CLI_TEXT
   command

@@ -1,5 +1,6 @@
 // The CPU reference of begin, place, mark, small glyphs and fill: items, boxes of tiles, tile words, masks and areas.
 #include "vector/cpu_reference/cpu_reference.h"
+#include "vector/cpu_reference/patches.h"
 #include "vector/place/placement.h"
 #include "vector/shared/color.h"
 #include "vector/shared/shape.h"
@@ -167,6 +168,7 @@ CpuPlaces placeOnCpu(const CpuInput& input) {
       places.words.resize(places.words.size() + wordsInRow(p) * (p.bottom - p.top));
       places.paths.push_back(p);
     }
+    const bool patches = coverByPatches(input, k, places); // then there are no segments
     const auto wordsOf = [&](uint32_t path) { return std::span(places.words).subspan(places.paths[path].firstWord); };
     const auto coverageOf = [&](uint32_t path) { return std::span(places.coverage).subspan(path * pixels, pixels); };
     // A small glyph's segments are not among the recording's.
@@ -187,7 +189,7 @@ CpuPlaces placeOnCpu(const CpuInput& input) {
       }
     }
     for (uint32_t i = item.firstPath; i < pathEnd; ++i) {
-      closeCoverage(grid, coverageOf(i));
+      if (!patches) closeCoverage(grid, coverageOf(i));
       if (item.smallGlyph) smallGlyphWords(input, places.paths[i], coverageOf(i), wordsOf(i));
       const uint32_t end =
           places.paths[i].firstWord + wordsInRow(places.paths[i]) * (places.paths[i].bottom - places.paths[i].top);

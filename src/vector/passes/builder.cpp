@@ -31,7 +31,10 @@ PassBuilder::PassBuilder(const CanvasSizes& canvas, const core::Device& device, 
                      shapeBytes = room.shapes * VkDeviceSize(sizeof(shader::ShapeRecord) + sizeof(PaintRecord) +
                                                              2 * sizeof(StopRecord)) +
                                   room.items * VkDeviceSize(sizeof(shader::ItemClipRecord) + sizeof(LayerRecord)) +
-                                  (maxAssets(room) + 1) * VkDeviceSize(sizeof(SlotRecord));
+                                  (maxAssets(room) + 1) * VkDeviceSize(sizeof(SlotRecord)) +
+                                  (sizes.maxTilePatches ? sizeof(shader::PatchTableRecord) +
+                                                              room.items * VkDeviceSize(sizeof(shader::PatchItemRecord))
+                                                        : 0);
   fromHost = list.add({"constants", core::ResourceKind::constants,
                        heads + room.items * sizeof(ItemRecord) + placed * sizeof(PlacementRecord) + shapeBytes});
   paths = list.add({"paths", scratch, VkDeviceSize(room.paths) * sizeof(shader::PlacedPath)});
@@ -59,6 +62,12 @@ PassBuilder::PassBuilder(const CanvasSizes& canvas, const core::Device& device, 
   operations =
       list.add({"operations", buffer, VkDeviceSize(sizes.layers.operations) * sizeof(shader::OperationRecord), true});
   layeredHistory = list.add({"layered history", buffer, 0, true});
+  if (sizes.maxTilePatches) {
+    constexpr VkDeviceSize kRecord = sizeof(shader::PatchPlaceRecord);
+    patchBlocks = list.add({"patch blocks", scratch, shader::kPatchBlocks * kRecord});
+    tilePatches = list.add({"tile patches", scratch, sizes.maxTilePatches * kRecord});
+    assert(patchBlocks == shader::kBindPatchBlocks && tilePatches == shader::kBindTilePatches);
+  }
   assert(pictures == shader::kBindPictures && operations == shader::kBindOperations &&
          layeredHistory == shader::kBindLayeredHistory);
   assert(history == shader::kBindHistory && fromHost == shader::kBindConstants && items == shader::kBindItems &&

@@ -19,7 +19,9 @@ enum Groups : uint32_t {
   kOnce,
   kClear,
   kFill,
-  kPresents
+  kPresents,
+  kPatches,
+  kPatchBlocks
 };
 constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
 enum Conditions : uint32_t {
@@ -52,7 +54,9 @@ enum Conditions : uint32_t {
   kAloneOne,
   kAloneDrawings,
   kSiftPlain,
-  kPresent = 48 // by target
+  kPatchesOne, // patches, of one drawing
+  kPatchesDrawings,
+  kPresent = 49 // by target
 };
 static_assert(kPresent + 2 < core::kMaxConditions);
 

@@ -12,7 +12,9 @@ core::PassList describePasses(const CanvasSizes& sizes, const core::Device& devi
     addSoftwareFill(builder);
     addSoftwareRaster(builder);
   } else {
+    if (sizes.maxTilePatches) addPatchTiles(builder);
     addFill(builder);
+    if (sizes.maxTilePatches) addPatchFill(builder);
     addRaster(builder);
   }
   if (sizes.layers.pixels) addLayers(builder);

@@ -174,13 +174,7 @@ private:
     places_.clear();
     for (const FormCurve& c : path_->curves) {
       places_.push_back((here() - curves) | c.kind << PatchReader::kPatchCurveKind);
-      words.push_back(bits({c.x0, c.y0, c.x1, c.y1}));
-      if (c.kind == PatchReader::kPatchConic) words.push_back(bits({c.control[0], c.control[1], c.weight, 0}));
-      if (c.kind == PatchReader::kPatchCubic) {
-        words.push_back(bits({c.control[0], c.control[1], c.control2[0], c.control2[1]}));
-        words.push_back(bits({c.form[0], c.form[1], c.form[2], c.form[3]}));
-        words.push_back(bits({c.form[4], c.form[5], c.form[6], 0}));
-      }
+      appendCurve(c, words);
     }
     const uint32_t cells = here();
     words.resize(words.size() + (cells_.size() + 1) / 2);
@@ -272,6 +266,16 @@ const char* reasonAgainst(const Drawing& drawing, std::span<const uint32_t> laye
 }
 
 } // namespace
+
+void appendCurve(const FormCurve& c, std::pmr::vector<uvec4>& words) {
+  words.push_back(bits({c.x0, c.y0, c.x1, c.y1}));
+  if (c.kind == PatchReader::kPatchConic) words.push_back(bits({c.control[0], c.control[1], c.weight, 0}));
+  if (c.kind == PatchReader::kPatchCubic) {
+    words.push_back(bits({c.control[0], c.control[1], c.control2[0], c.control2[1]}));
+    words.push_back(bits({c.form[0], c.form[1], c.form[2], c.form[3]}));
+    words.push_back(bits({c.form[4], c.form[5], c.form[6], 0}));
+  }
+}
 
 core::Result<Patches> makePatches(const Drawing& drawing, std::pmr::memory_resource* memory, uint32_t maxCurves,
                                   uint32_t firstPath, uint32_t count) {

@@ -1,6 +1,7 @@
 // The shaders' functions on patches (gpgp/shaders/patches.h), run on the CPU.
 #pragma once
-#include "vector/shared/layout.h"
+#include "core/math.h"
+#include "vector/shared/sample.h"
 
 #include <span>
 
@@ -23,6 +24,7 @@ public:
 #include "gpgp/shaders/patches.h"
 // The second reads the first.
 #include "gpgp/shaders/patch_quads.h"
+#include "vector/patches/tile.h"
 
 private:
   std::span<const uvec4> words_;

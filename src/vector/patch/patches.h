@@ -53,6 +53,18 @@ struct JoinedPath {
 JoinedPath joinSlabs(const Drawing& drawing, std::span<const PatchRecord> slabs, uint32_t maxCurves,
                      std::pmr::memory_resource* memory);
 
+/// Appends a curve as shaders read it: its ends, and what its kind needs besides.
+void appendCurve(const FormCurve& curve, std::pmr::vector<shader::uvec4>& words);
+
+/// A drawing's patches for canvases that rasterise them tile by tile: of all paths, those of clips included.
+struct TilePatches {
+  explicit TilePatches(std::pmr::memory_resource* memory) : curves(memory), patches(memory), ends(memory) {}
+  std::pmr::vector<shader::uvec4> curves;
+  std::pmr::vector<shader::TilePatchRecord> patches; ///< grouped by path; curves count from the first one
+  std::pmr::vector<uint32_t> ends;                   ///< of patches, by path
+};
+core::Result<TilePatches> makeTilePatches(const Drawing& drawing, std::pmr::memory_resource* memory);
+
 /// A drawing as shaders read it, and what it holds.
 struct Patches {
   struct LeftOut {

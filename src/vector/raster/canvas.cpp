@@ -43,10 +43,13 @@ CanvasSizes sizesOf(const GpgpCanvasCreateInfo& info, bool software) {
           .targets = info.targets ? info.targets : ~GpgpCanvasTargets(0),
           .items = {info.maxDrawings ? info.maxDrawings : 64, info.maxGlyphs ? info.maxGlyphs : 1024,
                     info.maxShapes ? info.maxShapes : 1024, info.maxPaths ? info.maxPaths : 262144},
-          .software = software,
+          .software = software && info.method == GPGP_CANVAS_FLATTENED,
           .layers = {info.maxLayerPixels, !info.maxLayerPixels      ? 0
                                           : info.maxLayerOperations ? info.maxLayerOperations
-                                                                    : 1024}};
+                                                                    : 1024},
+          .maxTilePatches = info.method == GPGP_CANVAS_FLATTENED ? 0
+                            : info.maxTilePatches                ? info.maxTilePatches
+                                                                 : 2 * entries};
 }
 } // namespace
 
@@ -150,7 +153,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
       std::any_of(assets.begin(), assets.end(), [](const ItemAsset& asset) { return asset.layered(); });
   LayerPlanner planner(layers_, sizes_.layers, operationPasses_, sizes_.maxBins(), info);
   Gather gather(context, sizes_.items, tables_, placements, info, layered ? 0 : sizes_.smallGlyphRoom(),
-                layered ? &planner : nullptr);
+                sizes_.maxTilePatches != 0, layered ? &planner : nullptr);
   for (uint32_t i = 0; i < info.itemCount && layered; ++i)
     if (auto ok = gather.plan(i, assets[i]); !ok) return ok;
   planner.finish();
@@ -210,16 +213,17 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   const shader::vec4 background{info.background[0], info.background[1], info.background[2], info.background[3]};
   if (!composites) header.background = background; // else what layers make lies on it
   const auto bytes = [](const auto& records, uint32_t count) { return std::as_bytes(std::span(records).first(count)); };
-  r.constants = {bytes(std::span(&header, 1), 1),
-                 std::as_bytes(gather.firstSlots()),
-                 std::as_bytes(std::span(placements, gather.placements())),
-                 bytes(tables_.sources, gather.sources),
-                 bytes(tables_.shapes, gather.shapes),
-                 bytes(tables_.paints, gather.paints),
-                 bytes(tables_.stops, gather.stops),
-                 bytes(tables_.clips, gather.clips),
-                 bytes(tables_.layers, gather.layers),
-                 bytes(tables_.slots, gather.assetCount + 1)};
+  struct Heads {
+    CanvasHeader header;
+    shader::SlotRecord slots[shader::kSlots];
+  } heads{header, {}};
+  std::copy_n(gather.firstSlots().begin(), shader::kSlots, heads.slots);
+  gather.placePatchTable(sizes_.maxTilePatches);
+  r.constants = {bytes(std::span(&heads, 1), 1),         std::as_bytes(std::span(placements, gather.placements())),
+                 bytes(tables_.sources, gather.sources), bytes(tables_.shapes, gather.shapes),
+                 bytes(tables_.paints, gather.paints),   bytes(tables_.stops, gather.stops),
+                 bytes(tables_.clips, gather.clips),     bytes(tables_.layers, gather.layers),
+                 bytes(tables_.slots, gather.slots()),   bytes(tables_.patchItems, gather.patchItems)};
 
   if (history) {
     core::Binding& binding = r.bindings[composites ? shader::kBindLayeredHistory : shader::kBindHistory];
@@ -253,6 +257,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     if (gather.smallGlyphs() > 0) r.conditions[several ? kSmallGlyphDrawings : kSmallGlyphOne] = true;
   }
   const bool one = !several && !sizes_.software; // software devices have one general shader
+  const shader::PatchTableRecord& patches = gather.patchTable;
+  if (patches.items) r.conditions[several ? kPatchesDrawings : kPatchesOne] = true;
   const uint32_t kinds[] = {alone    ? kGlyphs
                             : images ? kImages
                             // The plain shader fetches from one drawing only, and on hardware leaves no squares to the
@@ -288,6 +294,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   // loops.
   if (sizes_.software) r.groups[kSegments][2] = divide(height, 1024);
   r.groups[kOnce] = {1, 1, 1};
+  r.groups[kPatches] = rows(divide(patches.patches, std::max(patches.groupPatches, 1u)));
+  r.groups[kPatchBlocks] = {512, 1, 1};
   r.groups[kClear] = {64, 1, 1};
   r.groups[kFill] = {std::min(std::max(header.segmentCount / 160, divide(height, 64)), 4096u), 1, 1};
   r.groups[kSmallGlyphs] = rows(std::max(header.itemCount, 1u));
@@ -367,6 +375,8 @@ bool Canvas::takeCanvasReport(GpgpCanvasReport& report) {
   report.layerPixelsGiven = executed ? sizes_.layers.pixels : 0;
   report.layerOperations = counters.layerOperations;
   report.layerOperationsGiven = executed ? sizes_.layers.operations : 0;
+  report.tilePatches = counters.tilePatches;
+  report.tilePatchesGiven = executed ? sizes_.maxTilePatches : 0;
   if (counters.pathsDropped) report.base.status = GPGP_BUDGET_EXCEEDED;
   if (counters.ended) report.base.status = GPGP_ERROR_UNSUPPORTED;
   return true;

@@ -80,6 +80,19 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
           core::makeError(GPGP_ERROR_UNSUPPORTED, "paths[%u] is left out of the patches: %s", left.path, left.reason)
               .text);
   }
+  if (methods & GPGP_DRAWING_PATCHES) {
+    const auto patches = makeTilePatches(drawing, &context.host());
+    if (!patches) return patches.error();
+    const auto add = [&bytes = tables.bytes](const auto& records) {
+      const auto part = std::as_bytes(std::span(records));
+      const size_t at = bytes.size() / sizeof(shader::vec4);
+      bytes.insert(bytes.end(), part.begin(), part.end());
+      return static_cast<uint32_t>(at);
+    };
+    asset->tilePatchTable_ = add(patches->patches);
+    asset->tileCurveTable_ = add(patches->curves);
+    asset->tilePatchEnds_.assign(patches->ends.begin(), patches->ends.end());
+  }
   if (!drawing.plan.empty()) asset->setLayers(drawing, outlines);
   if (tables.bytes.size() > context.device.limits.maxStorageBufferRange)
     return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing has %zu bytes, but this device binds at most %u",
@@ -91,6 +104,8 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
   asset->segmentTable_ = first;
   asset->pathTable_ = first + tables.paths;
   asset->patchWords_ += first;
+  asset->tilePatchTable_ += first;
+  asset->tileCurveTable_ += first;
   const shader::SlotRecord& t = tables.slots;
   asset->tables_ = {first + t.paints, first + t.stops, first + t.clips, first + t.layers};
   asset->entryTable_ = first + tables.entries;

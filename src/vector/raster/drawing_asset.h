@@ -39,7 +39,7 @@ public:
                                                          std::span<const GpgpPathEdit> edits = {});
   DrawingAsset(core::Context& owner, const char* name)
       : Resident(owner, core::Kind::drawing, name), plan_(&owner.host()), layerBounds_(&owner.host()),
-        lattices_(&owner.host()), ends_(&owner.host()) {}
+        lattices_(&owner.host()), ends_(&owner.host()), tilePatchEnds_(&owner.host()) {}
 
   /// How many segments the first n paths have.
   uint32_t segments(size_t paths) const { return paths ? ends_[paths - 1] : 0; }
@@ -51,6 +51,11 @@ public:
   uint32_t patchWords() const { return patchWords_; } ///< where its patches begin, in vec4
   const PatchQuads& quads() const { return quads_; }  ///< that a draw of its patches has
   uint32_t pathsLeftOut() const { return pathsLeftOut_; }
+  /// Patches for canvases of GPGP_CANVAS_PATCHES: where they and their curves begin in its buffer, in vec4; which are
+  /// those of the first n paths.
+  uint32_t tilePatchTable() const { return tilePatchTable_; }
+  uint32_t tileCurveTable() const { return tileCurveTable_; }
+  uint32_t tilePatches(size_t paths) const { return paths ? tilePatchEnds_[paths - 1] : 0; }
   const shader::SlotRecord& tables() const { return tables_; }
   bool groups() const { return tables_.layers > tables_.clips || layerDepth_; } ///< that clip or fade
   uint32_t layerDepth() const { return layerDepth_; }                           ///< groups that fade in each other
@@ -87,8 +92,10 @@ private:
   LayerBounds layerBounds_;
   uint32_t entryTable_ = 0;
   std::pmr::vector<uint32_t> lattices_;
-  std::pmr::vector<uint32_t> ends_; // of segments, by path
-  std::optional<Kept> kept_;        // where it is editable
+  std::pmr::vector<uint32_t> ends_;          // of segments, by path
+  std::pmr::vector<uint32_t> tilePatchEnds_; // of patches, by path
+  uint32_t tilePatchTable_ = 0, tileCurveTable_ = 0;
+  std::optional<Kept> kept_; // where it is editable
   struct Hit {
     Outlines outlines;
     std::pmr::vector<PathRecord> paths;

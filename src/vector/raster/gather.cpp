@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdarg>
+#include <cstring>
 
 namespace gpgp::vector {
 using core::Result;
@@ -16,8 +17,9 @@ using shader::PlacementRecord;
 ItemTables::ItemTables(const ItemBudgets& budgets, std::pmr::memory_resource* memory)
     : sources(budgets.items, memory), shapes(budgets.shapes, memory), paints(budgets.shapes, memory),
       stops(size_t(budgets.shapes) * 2, memory), clips(budgets.items, memory), layers(budgets.items, memory),
-      clipStates(budgets.items, memory), groupStates(budgets.items, memory), assets(maxAssets(budgets), memory),
-      assetSlots(assets.size(), memory), slots(assets.size() + 1, memory),
+      patchItems(budgets.items, memory), clipStates(budgets.items, memory), groupStates(budgets.items, memory),
+      assets(maxAssets(budgets), memory), assetSlots(assets.size(), memory),
+      slots(assets.size() + 1 + Gather::kPatchTableSlots, memory),
       assetCells(std::bit_ceil(2 * assets.size()), memory) {}
 
 bool ItemAsset::layered() const {
@@ -69,6 +71,7 @@ uint32_t Gather::addSource(const Map& map, float opacity, uint32_t firstImage, c
   ItemRecord item{};
   const int x = region_.x - region_.box.left, y = region_.y - region_.box.top; // from the canvas to the region
   const Map moved = compose({1, 0, 0, 1, double(x), double(y)}, map);
+  moved_ = moved;
   if (clip.hidden || !placeItem(moved, info_.width, info_.height, item, x, y)) return kNone;
   shader::vec4 scissor = clip.scissor;
   if (planner_ && planner_->composites()) { // other regions lie beside this one
@@ -181,6 +184,21 @@ Result<void> Gather::addLayered(const DrawingAsset& drawing, uint32_t firstImage
   return {};
 }
 
+/// The patches of an item's paths, from `first` to `end`, for the placement that is added next.
+void Gather::addPatches(const DrawingAsset& drawing, uint32_t first, uint32_t end) {
+  const uint32_t begin = drawing.tilePatches(first), count = drawing.tilePatches(end) - begin;
+  if (count == 0) return;
+  if (patchItems == 0) firstPatchPath_ = used_.paths;
+  const int x = region_.x - region_.box.left, y = region_.y - region_.box.top;
+  shader::PatchItemRecord& record = tables_.patchItems[patchItems++];
+  record = patchItemOf(moved_, static_cast<int>(info_.width / 2) + x, static_cast<int>(info_.height / 2) + y);
+  record.item = used_.placements;
+  record.firstPatch = used_.patches;
+  record.patches = drawing.tilePatchTable() + begin * uint32_t(sizeof(shader::TilePatchRecord) / 16);
+  record.curves = drawing.tileCurveTable();
+  used_.patches += count;
+}
+
 /// As many of a run's first paths as there is room for.
 void Gather::addRun(const DrawingAsset& drawing, uint32_t index, uint32_t source, uint32_t slot) {
   const DrawingAsset::Run run = drawing.run(index);
@@ -191,6 +209,8 @@ void Gather::addRun(const DrawingAsset& drawing, uint32_t index, uint32_t source
   gradients = gradients || drawing.gradients();
   images = images || drawing.images();
   groups = groups || drawing.groups();
+  const bool patches = patched_ && (drawing.methods() & GPGP_DRAWING_PATCHES);
+  if (patches) addPatches(drawing, run.firstPath, run.firstPath + paths);
   placed_[used_.placements++] = {0,
                                  0,
                                  1,
@@ -200,7 +220,7 @@ void Gather::addRun(const DrawingAsset& drawing, uint32_t index, uint32_t source
                                  used_.paths,
                                  run.segmentTable,
                                  run.pathTable};
-  used_.segments += drawing.segments(run.firstPath + paths) - drawing.segments(run.firstPath);
+  if (!patches) used_.segments += drawing.segments(run.firstPath + paths) - drawing.segments(run.firstPath);
   used_.paths += paths;
 }
 
@@ -418,6 +438,16 @@ void Gather::finish(shader::CanvasHeader& header) {
   own.layers = own.clips + clips;
   header.assets = own.layers + layers;
   header.shapeTables = header.assets + 1 + assetCount;
+  if (!patchItems) return;
+  header.patchTable = header.shapeTables;
+  header.shapeTables += kPatchTableSlots + patchItems * uint32_t(sizeof(shader::PatchItemRecord) / 16);
+  constexpr uint32_t kMany = 16384; // fewer are dealt out to more workgroups, which then each wait for less
+  patchTable = {patchItems, used_.patches, used_.patches < kMany ? 16u : 64u, 0, firstPatchPath_, 0, 0, 0};
+}
+
+void Gather::placePatchTable(uint32_t limit) {
+  patchTable.limit = limit;
+  if (patchItems) std::memcpy(&tables_.slots[assetCount + 1], &patchTable, sizeof patchTable);
 }
 
 } // namespace gpgp::vector

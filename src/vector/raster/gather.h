@@ -46,6 +46,7 @@ struct ItemTables {
   std::pmr::vector<shader::StopRecord> stops;
   std::pmr::vector<shader::ItemClipRecord> clips;
   std::pmr::vector<shader::LayerRecord> layers;
+  std::pmr::vector<shader::PatchItemRecord> patchItems;
   std::pmr::vector<ClipState> clipStates; ///< of the list at hand, as are these
   std::pmr::vector<GroupState> groupStates;
   std::pmr::vector<const core::Resident*> assets; ///< different ones
@@ -60,8 +61,9 @@ public:
   /// entries small glyphs may take for themselves (small_glyphs.comp). `planner`: of recordings that show layers; null
   /// in others.
   Gather(core::Context& context, const ItemBudgets& budgets, ItemTables& tables, shader::PlacementRecord* placed,
-         const GpgpCanvasInfo& info, uint32_t smallGlyphRoom, LayerPlanner* planner = nullptr)
-      : planner_(planner), base_{{0, 0, static_cast<int>(info.width), static_cast<int>(info.height)}, 0, 0},
+         const GpgpCanvasInfo& info, uint32_t smallGlyphRoom, bool patches, LayerPlanner* planner = nullptr)
+      : patched_(patches),
+        planner_(planner), base_{{0, 0, static_cast<int>(info.width), static_cast<int>(info.height)}, 0, 0},
         region_(base_), context_(context), budgets_(budgets), tables_(tables), placed_(placed), info_(info),
         smallGlyphRoom_(smallGlyphRoom) {
     std::fill(tables.assetCells.begin(), tables.assetCells.end(), uint16_t(0));
@@ -84,18 +86,26 @@ public:
     VkDeviceSize size;
   };
   std::span<const BoundBuffer> buffers() const { return std::span(buffers_).first(bufferCount_); }
+  /// Of the recording's items that patches draw; none: zeros.
+  shader::PatchTableRecord patchTable{};
+  /// Writes it behind the records of slots, where shaders find it. `limit`: patches in tiles, at most.
+  void placePatchTable(uint32_t limit);
+  /// Of the table of slots: as many records, with the table of patches.
+  uint32_t slots() const { return assetCount + 1 + (patchItems ? kPatchTableSlots : 0); }
+  static constexpr uint32_t kPatchTableSlots = sizeof(shader::PatchTableRecord) / sizeof(shader::SlotRecord);
   bool gradients = false, projective = false, images = false, groups = false; ///< whether there are any
   bool lists = false; ///< there are shapes, scissors or clips, which shaders for one drawing do not know
   uint32_t smallGlyphs() const { return used_.smallGlyphs; }             ///< small glyphs
   uint32_t smallGlyphEntries() const { return used_.smallGlyphEntries; } ///< what they take at most
   uint32_t placements() const { return used_.placements; }
-  uint32_t sources = 0, shapes = 0, paints = 0, stops = 0, clips = 0, layers = 0; ///< used
+  uint32_t sources = 0, shapes = 0, paints = 0, stops = 0, clips = 0, layers = 0, patchItems = 0; ///< used
 
 private:
   using Chain = ItemTables::ClipState;
   core::Result<void> addDrawing(const DrawingAsset& drawing, const Map& map, float opacity, uint32_t firstImage,
                                 const Chain& clip);
   core::Result<void> planDrawing(const DrawingAsset& drawing, const Map& map, float opacity, const Chain& own);
+  void addPatches(const DrawingAsset& drawing, uint32_t first, uint32_t end);
   void addRun(const DrawingAsset& drawing, uint32_t run, uint32_t source, uint32_t slot);
   core::Result<void> addLayered(const DrawingAsset& drawing, uint32_t firstImage);
   bool lookAtPlain();
@@ -119,9 +129,12 @@ private:
   static constexpr uint32_t kNone = UINT32_MAX;
   BoundBuffer buffers_[shader::kMaxBuffers] = {};
   uint32_t bufferCount_ = 0;
+  const bool patched_; ///< drawings that have patches are drawn by them
   LayerPlanner* const planner_;
   LayerRegion base_, region_; ///< where plain things go; where what is added lies
   uint32_t unit_ = 0, nextRun_ = 0;
+  Map moved_; ///< of the source that was added last, from its drawing to where it is rasterised
+  uint32_t firstPatchPath_ = 0;
   core::Context& context_;
   const ItemBudgets budgets_;
   ItemTables& tables_;
@@ -129,7 +142,7 @@ private:
   const GpgpCanvasInfo& info_;
   uint32_t index_ = 0, entry_ = kNone; ///< of the item and of the list's command at hand
   struct Used {
-    uint32_t paths = 0, segments = 0, placements = 0, smallGlyphs = 0, smallGlyphEntries = 0;
+    uint32_t paths = 0, segments = 0, patches = 0, placements = 0, smallGlyphs = 0, smallGlyphEntries = 0;
     uint32_t glyphs = 0; ///< those without room, too
   } used_;
   uint32_t sourcesNeeded_ = 0, layersNeeded_ = 0, assetsNeeded_ = 0;

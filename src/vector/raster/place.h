@@ -89,6 +89,52 @@ inline bool placeItem(const GpgpCanvasItem& from, uint32_t width, uint32_t heigh
   return placeItem(toMap(from.transform, from.perspective), width, height, item);
 }
 
+/// How an item's patches are placed: points of the drawing count from what the canvas shows at (middleX, middleY), as
+/// far as that is known. `map`: one that placeItem() takes.
+inline shader::PatchItemRecord patchItemOf(const Map& map, int middleX, int middleY) {
+  const double mx = middleX, my = middleY, scale = map.projective() ? 1 : map.r;
+  // Rows x, y and w of the map, and of the one that counts from the middle.
+  double m[3][3] = {{map.a / scale, map.c / scale, map.e / scale},
+                    {map.b / scale, map.d / scale, map.f / scale},
+                    {map.p / scale, map.q / scale, map.r / scale}};
+  for (int c = 0; c < 3; ++c) m[0][c] -= mx * m[2][c], m[1][c] -= my * m[2][c];
+  const auto minor = [&](int r, int c) {
+    const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
+    return m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1];
+  };
+  const double determinant = m[0][0] * minor(0, 0) + m[0][1] * minor(0, 1) + m[0][2] * minor(0, 2);
+  double inverse[3][3];
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) inverse[r][c] = minor(c, r) / determinant;
+  double origin[2] = {};
+  if (inverse[2][2] > 0)
+    for (int i = 0; i < 2; ++i) {
+      const double at = inverse[i][2] / inverse[2][2];
+      const volatile float rounded = static_cast<float>(at); // g++ 12 may drop the rounding of a pair
+      if (std::abs(at) <= 4e7) origin[i] = static_cast<double>(rounded);
+    }
+  const auto narrow = [](double v) { return static_cast<float>(v); };
+  const auto forward = [&](int r, double w) {
+    return shader::vec4(narrow(m[r][0]), narrow(m[r][1]), narrow(m[r][2] + m[r][0] * origin[0] + m[r][1] * origin[1]),
+                        narrow(w));
+  };
+  const auto back = [&](int r, double w) {
+    const double at = r < 2 ? origin[r] : 0;
+    return shader::vec4(narrow(inverse[r][0] - at * inverse[2][0]), narrow(inverse[r][1] - at * inverse[2][1]),
+                        narrow(inverse[r][2] - at * inverse[2][2]), narrow(w));
+  };
+  return {back(0, origin[0]),
+          back(1, origin[1]),
+          back(2, map.projective() ? 1 : 0),
+          forward(0, mx),
+          forward(1, my),
+          forward(2, 0),
+          0,
+          0,
+          0,
+          0};
+}
+
 /// Whether glyphs placed by it stay finite, whatever their place and size.
 inline bool placesGlyphs(const shader::ItemRecord& item) {
   bool good = std::abs(item.offsets.z) < 1e20f && std::abs(item.offsets.w) < 1e20f;
