@@ -47,7 +47,7 @@ typedef struct GpgpAxiom {
 typedef struct GpgpInstance {
   float transform[12]; /**< Rows of a 3x4 matrix from the unit shape to world space. */
   uint32_t bucket;     /**< GpgpGrammarTerminal::bucket of the terminal. It selects the draw. */
-  uint32_t shape;      /**< A GpgpShape. */
+  uint32_t shape;      /**< A GpgpShape. GPGP_SHAPE_ROOF and TRAPEZOID have their form in the bits from 8 on. */
   uint32_t axiomId;    /**< GpgpAxiom::id. */
   uint32_t terminal;   /**< Index into gpgpGetGrammarTerminals. Several terminals may share a bucket. */
   uint32_t seed;       /**< Seed of the shape. */
@@ -78,10 +78,16 @@ typedef struct GpgpCompactInstance {
    *  15 bits each, of which 0 to 32767 stand for -sqrt(1/2) to sqrt(1/2). The highest bits of the first two say which
    *  is missing: bit 0 in the first, bit 1 in the second. */
   uint16_t rotation[3];
-  uint16_t shape; /**< A GpgpShape. */
+  uint16_t shape; /**< A GpgpShape, without the form of roofs and trapezoids. */
 } GpgpCompactInstance;
 
-/** Types of shapes. PRISM3 to PRISM8 and BOX are right prisms on regular polygons and on a square. */
+/** Types of shapes. PRISM3 to PRISM8 and BOX are right prisms on regular polygons and on a square.
+ *
+ *  A ROOF stands on the whole lower face of its unit box and ends in a ridge at y = 0.5. A TRAPEZOID lies in z = 0 on
+ *  the whole lower edge of its unit square and ends in a part of the upper one. GpgpInstance::shape says more of them:
+ *  bits 0 to 7 are the GpgpShape. Bits 8 to 27 are half the length of the ridge or of the upper edge, in units of
+ *  2^-20 of the extent along it. Bits 28 and 29 say where it is: 0 in the middle, 1 at -0.5, 2 at 0.5, of a ridge
+ * across it, of an edge along it. With bit 30 the ridge is parallel to z, else to x. */
 typedef uint32_t GpgpShape;
 enum {
   GPGP_SHAPE_TRIANGLE = 0,
@@ -100,7 +106,9 @@ enum {
   GPGP_SHAPE_DYNAMIC_POLYGON = 13,
   GPGP_SHAPE_DYNAMIC_CONVEX_RIGHT_PRISM = 14,
   GPGP_SHAPE_DYNAMIC_RIGHT_PRISM = 15,
-  GPGP_SHAPE_SPHERE = 16
+  GPGP_SHAPE_SPHERE = 16,
+  GPGP_SHAPE_ROOF = 17,
+  GPGP_SHAPE_TRAPEZOID = 18
 };
 
 /* ---------------------------------------------------------------- compiler (libgpgp_compiler) */

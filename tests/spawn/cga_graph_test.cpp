@@ -89,7 +89,7 @@ TEST(CgaGraphs, TheFirstMisfitIsNamedWithItsPlace) {
     return graph.file + ":" + std::to_string(graph.place.line) + ":" + std::to_string(graph.place.column) + " " +
            graph.why;
   };
-  EXPECT_EQ(why("Lot --> extrude(3)\n  roofHip(30)"), "main.cga:2:3 the operation 'roofHip'");
+  EXPECT_EQ(why("Lot --> extrude(3)\n  roofHip(30)"), "main.cga:2:3 'roofHip' of anything but a rectangle");
   EXPECT_EQ(why("Lot --> Other\nOther --> split(u, uvSpace, 0) { 1: A }"), "main.cga:2:11 split along 'u'");
   EXPECT_EQ(why("Lot --> A(rand(3))\nA(x) --> extrude(x)"), "main.cga:1:11 a random number that is given to a rule");
   EXPECT_EQ(why("Lot --> A(scope.sx)\nA(x) --> s('0.5, '1, '1) B(x)\nB(x) --> case x > 3: C else: D"),

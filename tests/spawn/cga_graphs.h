@@ -3,6 +3,8 @@
 #include "cga_run.h"
 #include "grammars.h"
 #include "spawn/evaluator/evaluator.h"
+#include "spawn/outputs/mesh.h"
+#include "spawn/shared/operators.h"
 #include "spawn/shared/shape.h"
 
 #include <algorithm>
@@ -105,7 +107,7 @@ inline std::vector<Ended> endsOf(const std::vector<GpgpInstance>& instances, con
     }
     Ended end{i.axiomId,
               {i.key[0], i.key[1]},
-              described(terminal.name, terminal.color, terminal.texture, i.shape == GPGP_SHAPE_QUAD),
+              described(terminal.name, terminal.color, terminal.texture, shader::isFlat(i.shape & 0xff)),
               {}};
     std::copy(i.transform, i.transform + 12, end.transform);
     ends.push_back(end);
@@ -115,9 +117,9 @@ inline std::vector<Ended> endsOf(const std::vector<GpgpInstance>& instances, con
 }
 
 /// Empty where both are the same; else the first difference. worst: gets the largest distance of two transforms, by
-/// their size.
+/// their size. reportError: by which part of it a report may differ.
 inline std::string difference(const Derivation& cpu, const std::vector<GpgpInstance>& instances, const GraphText& graph,
-                              double& worst) {
+                              double& worst, double reportError = 0) {
   std::map<std::string, Report> reports;
   const std::vector<Ended> a = endsOf(cpu), b = endsOf(instances, graph, reports);
   if (a.size() != b.size())
@@ -136,12 +138,78 @@ inline std::string difference(const Derivation& cpu, const std::vector<GpgpInsta
   }
   for (const auto& [name, report] : cpu.reports) {
     const Report& other = reports[name];
-    if (report.count != other.count || report.least != other.least || report.most != other.most ||
+    const auto isSame = [&](double a, double b) { return std::fabs(a - b) <= reportError * std::fabs(a); };
+    if (report.count != other.count || !isSame(report.least, other.least) || !isSame(report.most, other.most) ||
         std::fabs(report.sum - other.sum) > 1e-6 * (1 + std::fabs(report.sum)))
       return "report " + name + ": " + std::to_string(report.sum) + " (" + std::to_string(report.count) +
              ") on the CPU, " + std::to_string(other.sum) + " (" + std::to_string(other.count) + ") by the graph";
   }
   return reports.size() == cpu.reports.size() ? std::string() : "other reports";
+}
+
+/// Where the triangles of terminals differ from what the instances of the same keys look like: their corners, areas and
+/// volumes. Empty: nowhere. Terminals of assets are left out.
+inline std::string differenceOfShapes(const Derivation& cpu, const std::vector<GpgpInstance>& instances,
+                                      const std::vector<uint32_t>& words, const GraphText& graph) {
+  using namespace shader;
+  struct Look {
+    std::vector<glm::dvec3> corners;
+    double area = 0, volume = 0, size = 0;
+    void add(const std::array<glm::dvec3, 3>& t, const glm::dvec3& middle) {
+      const glm::dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
+      area += glm::length(normal) / 2;
+      volume += glm::dot(normal, t[0] - middle) / 6;
+      for (const glm::dvec3& p : t) {
+        size = std::max(size, glm::length(p - middle));
+        corners.push_back(p);
+      }
+    }
+    double farthest(const Look& other) const { // of its corners from any of the other's
+      double most = 0;
+      for (const glm::dvec3& p : corners) {
+        double least = 1e30;
+        for (const glm::dvec3& q : other.corners) least = std::min(least, glm::length(p - q));
+        most = std::max(most, least);
+      }
+      return most;
+    }
+  };
+  std::map<std::tuple<uint32_t, uint32_t, uint32_t>, const GpgpInstance*> found;
+  for (const GpgpInstance& i : instances) found[{i.axiomId, i.key[0], i.key[1]}] = &i;
+  for (size_t n = 0; n < cpu.leaves.size(); ++n) {
+    const Leaf& leaf = cpu.leaves[n];
+    const uvec2 key = instanceKey(cpu.scopes.at(n).key, leaf.axiom);
+    const GpgpInstance* instance = found[{leaf.axiom, key.x, key.y}];
+    if (!instance) return "no instance of " + cpu.names[leaf.name];
+    const GraphTerminal& terminal = graph.terminals.at(instance->terminal);
+    if (!terminal.asset.empty()) continue;
+    const glm::dvec3 middle(cpu.scopes[n].centre);
+    Look a, b;
+    for (uint32_t i = leaf.firstIndex; i < leaf.firstIndex + leaf.indexCount; i += 3) {
+      const auto at = [&](uint32_t k) { return glm::dvec3(cpu.vertices[cpu.indices[i + k]].position); };
+      a.add({at(0), at(1), at(2)}, middle);
+    }
+    const uint32_t type = instance->shape & 0xff;
+    const uint32_t geometry = type > kShapeSphere ? instance->shape : type | kQuadPolygon << 8;
+    const float* m = instance->transform;
+    for (uint32_t quad = 0; quad < meshQuads(words.data(), geometry); ++quad)
+      for (uint32_t half = 0; half < 6; half += 3) {
+        std::array<glm::dvec3, 3> t;
+        for (uint32_t k = 0; k < 3; ++k) {
+          const glm::dvec3 p(meshVertex(words.data(), geometry, quad, quadIndex(half + k)).position);
+          for (int row = 0; row < 3; ++row)
+            t[k][row] = m[4 * row] * p.x + m[4 * row + 1] * p.y + m[4 * row + 2] * p.z + double(m[4 * row + 3]);
+        }
+        b.add(t, middle);
+      }
+    const double scale = a.size + 1, far = std::max(a.farthest(b), b.farthest(a));
+    if (far > 1e-4 * scale || std::fabs(a.area - b.area) > 1e-4 * scale * scale ||
+        std::fabs(a.volume - b.volume) > 1e-4 * scale * scale * scale)
+      return cpu.names[leaf.name] + ": corners " + std::to_string(far) + " apart, areas " + std::to_string(a.area) +
+             " and " + std::to_string(b.area) + ", volumes " + std::to_string(a.volume) + " and " +
+             std::to_string(b.volume);
+  }
+  return {};
 }
 
 /// A random program of what has operators in a graph. Rules call later ones alone, so that it ends; each is for shapes

@@ -317,7 +317,7 @@ void emit(bool own, uint place, uint count, uint first, Shape s) {
     for (uint row = 0; row < 3; ++row)
       words[row] = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + row])));
     const uvec4 terminal = graphRows[s.node / 4];
-    words[3] = uvec4(terminal[kNodeArgument2], shapeType(s), axioms[axiom + 4].x, terminal[kNodeArgument]);
+    words[3] = uvec4(terminal[kNodeArgument2], instanceShape(s), axioms[axiom + 4].x, terminal[kNodeArgument]);
     words[4] = uvec4(s.seed, floatBitsToUint(s.custom), s.key);
     words[5] = packPlane(s.size, terminal[kNodeRule]);
   }

@@ -93,7 +93,7 @@ GPGP_FN CompactInstance compactInstance(Shape s, vec4 row0, vec4 row1, vec4 row2
   x = x * ((isMirrored ? -1.0f : 1.0f) / max(scale.x, 1e-30f));
   y = y * (1.0f / max(scale.y, 1e-30f));
   z = z * (1.0f / max(scale.z, 1e-30f));
-  const float thickness = isPolygon(shapeType(s)) && s.size.z == 0.0f ? 1.0f : s.size.z;
+  const float thickness = isFlat(shapeType(s)) && s.size.z == 0.0f ? 1.0f : s.size.z;
   scale = vec3(scale.x * s.size.x * (isMirrored ? -1.0f : 1.0f), scale.y * s.size.y, scale.z * thickness);
   const vec3 position = vec3(dot(a, s.position) + row0.w, dot(b, s.position) + row1.w, dot(c, s.position) + row2.w);
   const uvec3 rotation = packRotation(quaternionOf(x, y, z));

@@ -4,11 +4,11 @@
 // own. So one number says how much room a shape takes among vertices and among indices, and indices are the same
 // pattern whatever the shape. A convex polygon is a fan of (corners - 1) / 2 quads, the last triangle of an odd one
 // without area, a concave one the quads that its grammar was compiled with; prisms have two such ends and a quad a
-// side; a sphere is rings of quads. Triangles are counter-clockwise from outside.
+// side, roofs a quad a side and one below; a sphere is rings of quads. Triangles are counter-clockwise from outside.
 #ifndef GPGP_SHADERS_SPAWN_MESH_H
 #define GPGP_SHADERS_SPAWN_MESH_H
 #include "core/math.h"
-#include "spawn/shared/graph_format.h"
+#include "spawn/shared/roof_shapes.h"
 
 #ifdef __cplusplus
 #include <glm/exponential.hpp>
@@ -39,7 +39,8 @@ GPGP_FN uint polygonQuads(GPGP_GRAPH uint polygon) {
 GPGP_FN uint meshQuads(GPGP_GRAPH uint geometry) {
   const uint shape = geometry & 0xffu;
   if (shape == kShapeBox) return 6u;
-  if (shape == kShapeQuad) return 1u;
+  if (shape == kShapeQuad || shape == kShapeTrapezoid) return 1u;
+  if (shape == kShapeRoof) return 5u;
   if (shape == kShapeSphere) return kSphereRings * kSphereSegments;
   const uint polygon = polygonAt(GPGP_G geometry);
   const uint quads = polygonQuads(GPGP_G polygon);
@@ -107,6 +108,20 @@ GPGP_FN MeshPoint meshPoint(GPGP_GRAPH uint geometry, uint quad, uint corner) {
     const vec2 around = sineCosineDegrees(float(segment) * (360.0f / float(kSphereSegments)));
     p.position = vec3(0.5f * polar.x * around.y, 0.5f * polar.y, -0.5f * polar.x * around.x);
     p.uv = vec2(float(segment) / float(kSphereSegments), 1.0f - float(ring) / float(kSphereRings));
+    return p;
+  }
+  if (shape == kShapeTrapezoid || shape == kShapeRoof) {
+    const Ridge ridge = ridgeOf(geometry);
+    const bool isPlane = shape == kShapeTrapezoid;
+    const vec3 edge = isPlane ? vec3(ridge.place, ridge.halfLength, 0.0f) : roofEdge(ridge, quad);
+    const vec3 c = trapezoidCorner(edge, corner);
+    p.position = isPlane ? vec3(c.x, c.y, 0.0f) : roofPoint(quad, c.x, c.y, c.z);
+    p.uv = vec2(c.x + 0.5f, c.y + 0.5f);
+    if (!isPlane && quad == 4u) {
+      const MeshVertex v = rectangleVertex(true, 1u, corner);
+      p.position = v.position;
+      p.uv = v.uv;
+    }
     return p;
   }
   const uint polygon = polygonAt(GPGP_G geometry);

@@ -7,12 +7,6 @@
 #define GPGP_SHADERS_SPAWN_FANS_H
 #include "spawn/shared/operators.h"
 
-// Which operators that multiply there are: bits by kOp values, and kHas bits (operators.h). Generated kernels
-// say what their graph has; what it has not is left out.
-#ifndef GPGP_OPERATORS
-#define GPGP_OPERATORS 0xffffffffu
-#endif
-
 GPGP_SHADER_BEGIN
 
 GPGP_FN uint edgeTarget(GPGP_GRAPH uint node, uint index) {
@@ -83,7 +77,7 @@ GPGP_FN uint cutsAt(GPGP_GRAPH uint node, uint polygon) {
 }
 /// A shape that a SubDiv can not cut is dropped, which whoever asks counts.
 GPGP_FN bool isUncut(GPGP_GRAPH Shape s, uint node, uint axis) {
-  return isCut(shapeType(s), axis) && cutsAt(GPGP_G node, shapePolygon(s)) == 0u;
+  return isCut(shapeType(s), axis) && (shapeType(s) > kShapeSphere || cutsAt(GPGP_G node, shapePolygon(s)) == 0u);
 }
 /// The polygon of a SubDiv's part. False where there is nothing of it.
 GPGP_FN bool cutTo(GPGP_GRAPH GPGP_INOUT(Shape) s, uint node, uint axis, uint part) {

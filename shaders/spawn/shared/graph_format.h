@@ -21,7 +21,7 @@
 GPGP_SHADER_BEGIN
 
 GPGP_CONST uint kGraphMagic = 0x67707067u; // "gppg"
-GPGP_CONST uint kGraphVersion = 7u;
+GPGP_CONST uint kGraphVersion = 8u;
 
 // header words
 GPGP_CONST uint kHeaderMagic = 0u;
@@ -176,19 +176,28 @@ GPGP_CONST uint kShapeDynamicPolygon = 13u;
 GPGP_CONST uint kShapeDynamicConvexRightPrism = 14u;
 GPGP_CONST uint kShapeDynamicRightPrism = 15u;
 GPGP_CONST uint kShapeSphere = 16u;
-GPGP_CONST uint kShapeCount = 17u;
+GPGP_CONST uint kShapeRoof = 17u;
+GPGP_CONST uint kShapeTrapezoid = 18u;
+GPGP_CONST uint kShapeCount = 19u;
 
 GPGP_CONST uint kDynamicShapes = 0xf000u; // bits
 GPGP_CONST uint kPolygonShapes = 0x303fu; // bits: triangle to octagon, the two dynamic ones
+GPGP_CONST uint kFlatShapes = kPolygonShapes | (1u << kShapeTrapezoid);
+GPGP_CONST uint kRectangleShapes = (1u << kShapeQuad) | (1u << kShapeBox);
+/// Bits: shapes whose top CompSplit finds.
+GPGP_CONST uint kFacedShapes = ~((1u << kShapeSphere) | (1u << kShapeRoof));
+GPGP_FN bool isFlat(uint shape) { return ((kFlatShapes >> shape) & 1u) != 0u; }
 GPGP_FN bool isPolygon(uint shape) { return ((kPolygonShapes >> shape) & 1u) != 0u; }
-GPGP_FN bool isPrism(uint shape) { return !isPolygon(shape) && shape != kShapeSphere; }
+GPGP_FN bool isPrism(uint shape) { return !isPolygon(shape) && shape < kShapeSphere; }
 /// What a polygon becomes when it is extruded.
 GPGP_FN uint prismOf(uint polygon) { return polygon <= kShapeOctagon ? polygon + 6u : polygon + 2u; }
 /// What the ends of a prism are.
 GPGP_FN uint polygonOf(uint prism) { return prism <= kShapePrism8 ? prism - 6u : prism - 2u; }
 
-/// Whether SubDiv along an axis makes something else of a shape's polygon. A sphere's pieces are spheres.
+/// Whether SubDiv along an axis makes something else of a shape's polygon. A sphere's pieces are spheres; of roofs and
+/// trapezoids there are no pieces.
 GPGP_FN bool isCut(uint shape, uint axis) {
+  if (shape > kShapeSphere) return true;
   return shape != kShapeBox && shape != kShapeQuad && shape != kShapeSphere && axis != (isPolygon(shape) ? 2u : 1u);
 }
 /// What the piece is.

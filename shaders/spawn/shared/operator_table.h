@@ -34,19 +34,21 @@
   ROW(TurnCorner, 8u, Passing, "vvv", 1, One, kAnyShape, GPGP_OPERATOR_TURN_CORNER, turnAtCorner(s, GPGP_VALUES))      \
   ROW(ToFace, 9u, Passing, "v", 1, One, kAnyShape, GPGP_OPERATOR_TO_FACE, toSideOf(s, GPGP_VALUE))                     \
   ROW(SetAttribute, 10u, Passing, "v", 1, One, kAnyShape, GPGP_OPERATOR_SET_ATTRIBUTE, setCustom(s, GPGP_VALUE))       \
-  LAST(SetGeometry, 11u, Passing, "sp", 1, One, kAnyShape, kNotWritten, setGeometry(s, GPGP_ARGUMENT, GPGP_ARGUMENT2))
+  ROW(Roof, 11u, Passing, "vvv", 1, One, kRectangleShapes, GPGP_OPERATOR_ROOF, roof(s, GPGP_VALUES))                   \
+  ROW(RoofFace, 12u, Passing, "vvv", 1, One, 1u << kShapeRoof, GPGP_OPERATOR_ROOF_FACE, roofFace(s, GPGP_VALUES))      \
+  LAST(SetGeometry, 13u, Passing, "sp", 1, One, kAnyShape, kNotWritten, setGeometry(s, GPGP_ARGUMENT, GPGP_ARGUMENT2))
 #define GPGP_OPERATOR_TABLE(ROW, LAST)                                                                                 \
   LAST(Terminal, 0u, Ending, "", 0, One, kAnyShape, kNotWritten, )                                                     \
   GPGP_PASSING_OPERATORS(ROW, LAST)                                                                                    \
-  ROW(If, 12u, Choosing, "v", 2, Optional, kAnyShape, GPGP_OPERATOR_IF, )                                              \
-  ROW(IfSizeLess, 13u, Choosing, "av", 2, Optional, kAnyShape, GPGP_OPERATOR_IF_SIZE_LESS, )                           \
-  LAST(RandomRule, 14u, Choosing, "v:", kMany, Optional, kAnyShape, GPGP_OPERATOR_RANDOM_RULE, )                       \
-  ROW(Collider, 15u, Context, "t", 1, One, kAnyShape, GPGP_OPERATOR_COLLIDER, )                                        \
-  LAST(IfCollides, 16u, Context, "t", 2, Optional, kAnyShape, GPGP_OPERATOR_IF_COLLIDES, )                             \
-  ROW(CompSplit, 17u, Multiplying, "", 3, Fixed, ~kPolygonShapes, GPGP_OPERATOR_COMP_SPLIT, )                          \
-  ROW(SubDiv, 18u, Multiplying, "a:", kMany, Optional, kAnyShape, GPGP_OPERATOR_SUB_DIV, )                             \
-  ROW(Repeat, 19u, Multiplying, "avm", 1, Any, kAnyShape, GPGP_OPERATOR_REPEAT, )                                      \
-  LAST(Replicate, 20u, Multiplying, "", kMany, One, kAnyShape, GPGP_OPERATOR_REPLICATE, )
+  ROW(If, 14u, Choosing, "v", 2, Optional, kAnyShape, GPGP_OPERATOR_IF, )                                              \
+  ROW(IfSizeLess, 15u, Choosing, "av", 2, Optional, kAnyShape, GPGP_OPERATOR_IF_SIZE_LESS, )                           \
+  LAST(RandomRule, 16u, Choosing, "v:", kMany, Optional, kAnyShape, GPGP_OPERATOR_RANDOM_RULE, )                       \
+  ROW(Collider, 17u, Context, "t", 1, One, kAnyShape, GPGP_OPERATOR_COLLIDER, )                                        \
+  LAST(IfCollides, 18u, Context, "t", 2, Optional, kAnyShape, GPGP_OPERATOR_IF_COLLIDES, )                             \
+  ROW(CompSplit, 19u, Multiplying, "", 3, Fixed, ~kPolygonShapes, GPGP_OPERATOR_COMP_SPLIT, )                          \
+  ROW(SubDiv, 20u, Multiplying, "a:", kMany, Optional, kAnyShape, GPGP_OPERATOR_SUB_DIV, )                             \
+  ROW(Repeat, 21u, Multiplying, "avm", 1, Any, kAnyShape, GPGP_OPERATOR_REPEAT, )                                      \
+  LAST(Replicate, 22u, Multiplying, "", kMany, One, kAnyShape, GPGP_OPERATOR_REPLICATE, )
 
 // Codes that take two values and leave one. ROW(name, number, spelling, precedence, kind, code)
 //

@@ -5,6 +5,13 @@
 #ifndef GPGP_SHADERS_SPAWN_OPERATORS_H
 #define GPGP_SHADERS_SPAWN_OPERATORS_H
 #include "spawn/shared/expression.h"
+#include "spawn/shared/roofs.h"
+
+// Which operators that multiply there are: bits by kOp values, and kHas bits, below. Generated kernels say what their
+// graph has; what it has not is left out.
+#ifndef GPGP_OPERATORS
+#define GPGP_OPERATORS 0xffffffffu
+#endif
 
 GPGP_SHADER_BEGIN
 
@@ -258,7 +265,7 @@ struct Faces {
 GPGP_FN Faces facesOf(GPGP_GRAPH uint geometry, uint wanted) {
   const uint shape = geometry & 0xffu;
   const uint sides = (wanted & 4u) != 0u ? sideCount(GPGP_G geometry) : 0u;
-  const uint top = shape != kShapeSphere ? wanted & 1u : 0u;
+  const uint top = wanted & (kFacedShapes >> shape) & 1u;
   const uint bottom = isPrism(shape) ? wanted & 2u : 0u;
   Faces f;
   f.successors = top | bottom | (sides > 0u ? 4u : 0u);
@@ -300,9 +307,21 @@ GPGP_FN uint selectBit(uint bits, uint n) {
 }
 
 // Bits of GPGP_OPERATORS beside those of kOp values: cases of operators that cost much code.
+GPGP_CONST uint kHasRoofs = 1u << 28;     // Roof, RoofFace
 GPGP_CONST uint kHasCuts = 1u << 29;      // SubDiv of others than boxes, quads and spheres
 GPGP_CONST uint kHasDivisions = 1u << 30; // SubDiv whose parts are not constant
 GPGP_CONST uint kHasSides = 1u << 31;     // CompSplit of others than boxes
+
+GPGP_FN void roof(GPGP_INOUT(Shape) s, vec3 v) {
+  if ((GPGP_OPERATORS & kHasRoofs) != 0u) raiseRoof(s, v);
+}
+GPGP_FN void roofFace(GPGP_INOUT(Shape) s, vec3 v) {
+  if ((GPGP_OPERATORS & kHasRoofs) != 0u) toRoofFace(s, v);
+}
+/// As GpgpInstance::shape: roofs and trapezoids with the bits that say their form.
+GPGP_FN uint instanceShape(Shape s) {
+  return (GPGP_OPERATORS & kHasRoofs) != 0u && shapeType(s) > kShapeSphere ? s.geometry : shapeType(s);
+}
 
 /// How a chain of operators that pass on one shape ended.
 GPGP_CONST uint kEndDiscarded = 0u;

@@ -92,7 +92,7 @@ GPGP_FN Shape axiomShape(GPGP_GRAPH vec3 size, uint seed, uint rule, float custo
   s.custom = isNan(custom) ? unitFloat(s.seed) : settle(custom);
   const uint words = startWords(GPGP_G rule);
   s.geometry = words != 0u ? startGeometry(GPGP_G rule, words) : 0u;
-  if (isPolygon(shapeType(s))) s.size.z = 0.0f;
+  if (isFlat(shapeType(s))) s.size.z = 0.0f;
   s.key = childKey(uvec2(seed, 0u), 0u); // without the id: axioms that share a seed draw the same numbers
   s.axiom = index;
   s.depth = 0u;
@@ -126,7 +126,7 @@ GPGP_FN vec3 opposite(vec3 v) { return settleFinite3(vec3(0.0f) - v); }
 /// One of the three rows of unit shape to world, for row vectors of the axiom's transform.
 GPGP_FN vec4 instanceRow(Shape s, vec4 axiomRow) {
   // A polygon without thickness keeps a unit normal, so that the matrix stays invertible.
-  const float thickness = isPolygon(shapeType(s)) && s.size.z == 0.0f ? 1.0f : s.size.z;
+  const float thickness = isFlat(shapeType(s)) && s.size.z == 0.0f ? 1.0f : s.size.z;
   GPGP_PRECISE lanes4 row = lanes4(s.axisX.x, s.axisY.x, s.axisZ.x, s.position.x) * axiomRow.x +
                             lanes4(s.axisX.y, s.axisY.y, s.axisZ.y, s.position.y) * axiomRow.y +
                             lanes4(s.axisX.z, s.axisY.z, s.axisZ.z, s.position.z) * axiomRow.z;

@@ -143,7 +143,9 @@ void addTriangles(Triangles& all, const std::vector<GpgpInstance>& instances) {
   std::vector<UnitShape> shapes;
   for (uint32_t shape = 0; shape <= GPGP_SHAPE_SPHERE; ++shape) shapes.push_back(unitShape(shape));
   for (const GpgpInstance& instance : instances) {
-    const UnitShape& shape = shapes[std::min<uint32_t>(instance.shape, GPGP_SHAPE_SPHERE)];
+    const bool isOwn = instance.shape > GPGP_SHAPE_SPHERE; // a form of its own
+    const UnitShape own = isOwn ? unitShape(instance.shape) : UnitShape();
+    const UnitShape& shape = isOwn ? own : shapes[instance.shape];
     if (!all.keep) {
       all.count(instance.terminal, shape.triangles.size());
       continue;

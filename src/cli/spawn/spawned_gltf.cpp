@@ -235,7 +235,9 @@ void writeGlb(const std::filesystem::path& file, const spawn::Graph& graph, cons
     addVertices(meshes, spawned);
   } else {
     for (const GpgpInstance& instance : spawned.instances) {
-      if (instances != GlbInstances::triangles && placementOf(instance))
+      if (instance.shape > GPGP_SHAPE_SPHERE) // a form of its own
+        meshes.at(instance.terminal).add(unitShape(instance.shape), instance);
+      else if (instances != GlbInstances::triangles && placementOf(instance))
         own.at(instance.terminal).push_back(&instance);
       else
         meshes.at(instance.terminal).add(shapes.at(instance.shape), instance);

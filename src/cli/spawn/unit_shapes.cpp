@@ -37,10 +37,14 @@ UnitShape unitShape(GpgpShape shape) {
   using namespace shader;
   if (shape == kShapeDynamicConvexPolygon || shape == kShapeDynamicPolygon) shape = kShapeQuad;
   if (shape == kShapeDynamicConvexRightPrism || shape == kShapeDynamicRightPrism) shape = kShapeBox;
-  spawn::Graph graph(std::pmr::new_delete_resource());
-  spawn::addRegularPolygons(graph);
-  const auto words = spawn::serialize(graph, std::pmr::new_delete_resource());
-  const uint32_t geometry = shape | spawn::usualPolygon(shape) << 8;
+  std::pmr::vector<uint32_t> words(std::pmr::new_delete_resource());
+  uint32_t geometry = shape; // of roofs and trapezoids all that there is
+  if (shape <= kShapeSphere) {
+    spawn::Graph graph(std::pmr::new_delete_resource());
+    spawn::addRegularPolygons(graph);
+    words = spawn::serialize(graph, std::pmr::new_delete_resource());
+    geometry |= spawn::usualPolygon(shape) << 8;
+  }
   UnitShape result;
   for (uint32_t quad = 0; quad < meshQuads(words.data(), geometry); ++quad) {
     const uint32_t first = 4 * quad;

@@ -190,16 +190,20 @@ Type Compiler::choices(const Expression& e, const Context& context) {
   return type;
 }
 
-size_t placeOf(std::string_view operation, size_t argument, size_t count) {
+size_t placeOf(std::string_view operation, size_t argument, std::span<const ExpressionPtr> all) {
   if (operation == "extrude" || operation == "report") return 0;
-  return operation == "r" && count == 4 && argument ? argument - 1 : argument;
+  if (operation == "taper" || operation.starts_with("roof")) { // the height or angle is the third value there
+    const bool hasMeasure = all[0]->text == "byHeight" || all[0]->text == "byAngle";
+    return argument + 2 - (hasMeasure && argument ? 1 : 0);
+  }
+  return operation == "r" && all.size() == 4 && argument ? argument - 1 : argument;
 }
 
 void Compiler::arguments(std::string_view name, const std::vector<ExpressionPtr>& arguments, const Context& context,
                          bool isOperation) {
   const uint32_t words = wordArguments(name, arguments.size());
   for (size_t i = 0; i < arguments.size(); ++i) {
-    if (isOperation) drawsOf(*arguments[i], placeOf(name, i, arguments.size()));
+    if (isOperation) drawsOf(*arguments[i], placeOf(name, i, arguments));
     expression(*arguments[i], context, i < 32 && ((words >> i) & 1u));
   }
 }

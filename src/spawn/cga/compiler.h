@@ -30,7 +30,7 @@ bool isFollowed(const Body& body, size_t next, bool isTail);
 bool forks(Makes makes, const Body& body, size_t next, bool isTail);
 
 /// The place of an operation's argument among the values of the operator that a graph has for it.
-size_t placeOf(std::string_view operation, size_t argument, size_t count);
+size_t placeOf(std::string_view operation, size_t argument, std::span<const ExpressionPtr> all);
 /// The module that a path with prefixes leads to, and the name behind them. isMissing: by way of an import that could
 /// not be read.
 Module* resolvePath(const std::string& path, Module* module, std::string& last, bool& isMissing);

@@ -65,9 +65,9 @@ struct Leaf {
 
 /// Where a leaf is, as an instance of an operator graph says it.
 struct LeafScope {
-  glm::vec3 centre, x, y, z; ///< world space; axes of the length of its extents. A rectangle faces z, of length 1
-  glm::uvec2 key; ///< of the path: instanceKey() of shaders/spawn/shared/shape.h makes GpgpInstance::key of it
-  bool isQuad = false;
+  glm::vec3 centre, x, y, z; ///< world space; axes of the length of its extents. A polygon faces z, of length 1
+  glm::uvec2 key;      ///< of the path: instanceKey() of shaders/spawn/shared/shape.h makes GpgpInstance::key of it
+  bool isQuad = false; ///< or another polygon in its plane
 };
 
 struct Vertex {

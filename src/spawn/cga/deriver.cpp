@@ -437,7 +437,9 @@ void Deriver::writeTriangles(const Form& form, Derivation& result) {
 
 LeafScope Deriver::scopeOf(const Shape& shape) const {
   const bool isFlat = shape.form.mesh == boxes_.flat && boxes_.is(shape.form);
-  const bool isQuad = isFlat || (shape.form.mesh == boxes_.upright && boxes_.is(shape.form));
+  // What else lies in a plane, a roof's face for one, faces z as well.
+  const bool isQuad = isFlat || (boxes_.is(shape.form) ? shape.form.mesh == boxes_.upright
+                                                       : shape.form.mesh != 0 && shape.form.scope.size.z == 0);
   const Scope s = isFlat ? boxes_.face(shape.form, 0).scope : shape.form.scope;
   LeafScope leaf;
   leaf.x = s.axisX * s.size.x;

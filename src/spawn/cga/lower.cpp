@@ -101,6 +101,10 @@ uint32_t Lowering::terminalNumber(GraphTerminal terminal) {
 }
 
 Lowering::Text Lowering::terminal(const std::string& name, const State& state) {
+  if (state.roof && state.roof->overhangs)
+    misfit("a roof with overhangs that comp(f) does not take apart", state.roof->place);
+  const bool isFace = state.isMesh && (state.form == Form::upright || state.form == Form::trapezoid);
+  if (isFace && state.extents[2] != Extent::zero) misfit("a roof's face whose scope has a height, but no solid,", {});
   const uint32_t number = terminalNumber({name, state.color, state.texture, state.asset, false});
   if (result_.terminals.size() > kMostTerminals) misfit("a program of so many different terminals", {});
   return {(state.form == Form::flat ? "ToFace(0) " : "") + terminalName(number), 2};
@@ -150,7 +154,10 @@ std::string Lowering::keyOf(const Bound& bound) const {
 }
 
 std::string Lowering::keyOf(const State& state) const {
-  std::string key = std::to_string(static_cast<int>(state.form));
+  std::string key = std::to_string(static_cast<int>(state.form)) + (state.isMesh ? "m" : "");
+  if (const auto& roof = state.roof)
+    key += " " + std::to_string(roof->form) + " " + text(roof->overhang) + " " + text(roof->overhangAtGables) + " " +
+           text(roof->flattest) + " " + text(roof->steepest) + '\n';
   for (int i = 0; i < 3; ++i)
     key += "," + std::to_string(static_cast<int>(state.extents[i])) + "," + std::to_string(state.axes[i]);
   for (int i = 0; i < 4; ++i) key += "," + text(state.color[i]);

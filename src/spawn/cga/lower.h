@@ -28,13 +28,21 @@ private:
     std::string what, file;
     Place place;
   };
-  enum class Form : uint8_t { flat, upright, box, asset };
+  enum class Form : uint8_t { flat, upright, box, asset, roof, trapezoid };
   enum class Extent : uint8_t { unknown, zero, positive };
 
   /// A value beside its name. stale: it read sizes that the shape no longer has, or numbers that it drew elsewhere.
   struct Bound {
     Value value;
     std::string stale; ///< why it cannot be used; empty: it can
+  };
+  /// A roof on a rectangle.
+  struct Roof {
+    uint32_t form = 0;                     ///< kRoof...
+    FormulaPtr overhang, overhangAtGables; ///< its faces have, not the shape
+    bool overhangs = false;
+    float flattest = 0, steepest = 90; ///< degrees, of what slopes
+    Place place;
   };
   /// What is known of the shape that a rule runs on. Frames are as the graph's: a flat rectangle is a box without
   /// height, an upright one a quad.
@@ -48,6 +56,8 @@ private:
     std::map<uint32_t, Bound> attributes; ///< that were set, by slot
     std::map<std::string, Bound> locals;  ///< of the rule, its parameters too
     bool made = false;
+    bool isMesh = false;      ///< to the CPU, which counts its faces otherwise than those of boxes
+    std::optional<Roof> roof; ///< of Form::roof
     std::array<FormulaPtr, 3> moved{number(0), number(0), number(0)}; ///< from the centre where the rule began
   };
   struct Scope { ///< of names
@@ -113,6 +123,12 @@ private:
   bool selects(const cga::Part& part, const Scope& scope, const State& state, uint32_t face, uint32_t index,
                uint32_t count);
   Text colored(const Value& value, const State& state, const Continue& goOn, Place place);
+
+  // lower_roofs.cpp
+  Text roof(const Statement& s, Operation operation, const Scope& scope, State state, const Continue& goOn);
+  Text roofFaces(const Statement& s, const Scope& scope, const State& state);
+  State roofFaceOf(const State& state, uint32_t side) const;
+  bool selectsOfRoof(const cga::Part& part, const Scope& scope, const State& state, uint32_t side, uint32_t index);
 
   // lower_expressions.cpp
   Value value(const Expression& e, const Scope& scope, const State& state);

@@ -315,7 +315,10 @@ Value Lowering::named(const Expression& e, const Scope& scope, const State& stat
     if (set != state.attributes.end()) return use(set->second, e.text, e.place);
     return attribute(*entity, e.place);
   }
-  const uint32_t known = state.form == Form::asset ? 0 : 1; // of the geometry, whether it fills the scope
+  // Of the geometry, whether it fills the scope.
+  const bool known = state.form != Form::asset && state.form != Form::roof && state.form != Form::trapezoid;
+  if (state.roof && state.roof->overhangs && e.text.starts_with("scope."))
+    misfit("'" + e.text + "' of a roof with overhangs", e.place);
   if (e.text == "scope.sx") return valueOf(sizeOf(0));
   if (e.text == "scope.sy") return valueOf(sizeOf(1));
   if (e.text == "scope.sz") return valueOf(sizeOf(2));

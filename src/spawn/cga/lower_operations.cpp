@@ -49,11 +49,22 @@ Lowering::Text Lowering::operation(const Statement& s, Operation operation, cons
   };
   const auto needsBox = [&] {
     if (state.form == Form::asset) misfit("'" + s.name + "' of an asset or a round primitive", s.place);
+    if (state.form == Form::roof) misfit("'" + s.name + "' of a roof", s.place);
+    if (state.form == Form::trapezoid) misfit("'" + s.name + "' of a roof's face that is no rectangle", s.place);
   };
   const auto isPositive = [&] {
     return std::all_of(state.extents.begin(), state.extents.end(), [](Extent e) { return e == Extent::positive; });
   };
+  const bool isOfMaterial =
+      operation == Operation::color_ || operation == Operation::texture_ || operation == Operation::label_;
+  if (state.roof && state.roof->overhangs && !isOfMaterial)
+    misfit("'" + s.name + "' of a roof with overhangs", s.place);
   switch (operation) {
+  case Operation::roofGable_:
+  case Operation::roofHip_:
+  case Operation::roofPyramid_:
+  case Operation::roofShed_:
+  case Operation::taper_: return roof(s, operation, scope, std::move(state), goOn);
   case Operation::t_: {
     const auto v = vector(0);
     for (uint32_t i = 0; i < 3; ++i)
@@ -65,6 +76,7 @@ Lowering::Text Lowering::operation(const Statement& s, Operation operation, cons
   }
   case Operation::s_: {
     const auto v = vector(0);
+    if (state.form == Form::roof) needsBox();
     // Where center() follows, sizes along its axes grow from the centre.
     std::array<bool, 3> centred{};
     if (next && next->kind == Statement::Kind::call && next->name == "center" && next->arguments.size() == 1) {
@@ -129,7 +141,8 @@ Lowering::Text Lowering::operation(const Statement& s, Operation operation, cons
     const bool isStill =
         std::all_of(v.begin(), v.end(), [](const FormulaPtr& f) { return f->isNumber() && f->value == 0; });
     if (isStill) return goOn(std::move(state));
-    state.axes = {0, 0, 0};
+    const auto isZero = [](const FormulaPtr& f) { return f->isNumber() && f->value == 0; };
+    state.axes = {0, isZero(v[0]) && isZero(v[2]) ? state.axes[1] : int8_t{0}, 0};
     state.moved = {nullptr, nullptr, nullptr};
     Text rest = wrapped("TurnCorner" + values(v), goOn(state));
     if (a.size() != 4 || word(*a[0]) != "scopeCenter") return rest;
@@ -199,6 +212,8 @@ Lowering::Text Lowering::operation(const Statement& s, Operation operation, cons
     if (!isPositive()) misfit("'" + s.name + "' in a scope that may have no extent along an axis", s.place);
     const bool isCube = operation == Operation::primitiveCube_ || what.starts_with("builtin:cube");
     state.form = isCube ? Form::box : Form::asset;
+    state.roof.reset();
+    state.isMesh = false;
     state.asset = isCube ? std::string() : what;
     return wrapped("GrowAlong(Y,ShapeSize(Y))", goOn(std::move(state)));
   }
@@ -207,6 +222,8 @@ Lowering::Text Lowering::operation(const Statement& s, Operation operation, cons
     if (state.extents[0] != Extent::positive || state.extents[2] != Extent::positive)
       misfit("'" + s.name + "' in a scope that may have no extent along an axis", s.place);
     state.form = Form::flat;
+    state.roof.reset();
+    state.isMesh = false;
     state.asset.clear();
     state.extents[1] = Extent::zero;
     changeSize(state, 1, kOtherSize);
@@ -279,6 +296,8 @@ Lowering::Text Lowering::split(const Statement& s, const Scope& scope, const Sta
   const std::string axisName = word(*s.arguments[0]);
   if (axisName != "x" && axisName != "y" && axisName != "z") misfit("split along '" + axisName + "'", s.place);
   if (state.form == Form::asset) misfit("split of an asset or a round primitive", s.place);
+  if (state.form == Form::roof) misfit("split of a roof", s.place);
+  if (state.form == Form::trapezoid) misfit("split of a roof's face that is no rectangle", s.place);
   const uint32_t axis = axisNamed(axisName);
   if (state.extents[axis] == Extent::zero) return nothing();
   size_t place = 0;
@@ -485,6 +504,9 @@ Lowering::Text Lowering::components(const Statement& s, const Scope& scope, cons
   if (state.form == Form::asset) misfit("comp of an asset or a round primitive", s.place);
   for (const cga::Part& part : s.parts)
     if (part.isOneShape || !part.selector) misfit("comp with =, of several faces as one shape,", part.place);
+  if (state.roof) return roofFaces(s, scope, state);
+  if (state.form == Form::trapezoid || (state.isMesh && state.form == Form::box))
+    misfit("comp of a roof's face that is no rectangle, or was extruded,", s.place);
   const bool isBox = state.form == Form::box;
   constexpr uint32_t kFaces[6] = {1, 3, 5, 2, 4, 0}; // by CGA's index
   std::vector<Text> ways(6, nothing());

@@ -52,6 +52,7 @@ public:
     writeParameters();
     uint32_t operators = 0;
     for (const Node& node : graph_.nodes) {
+      if (node.op == kOpRoof || node.op == kOpRoofFace) operators |= kHasRoofs;
       if (table_.family[indexOf(node)]) continue;
       const bool byWords = couldMultiply(node.op) &&
                            (room_.words || node.division == UINT32_MAX || isByWords(node) || stops_[indexOf(node)]);

@@ -317,7 +317,7 @@ void Walker::emit(const Frame& frame) {
     for (int c = 0; c < 4; ++c) instance.transform[4 * r + uint32_t(c)] = row[c];
   }
   instance.bucket = bucket;
-  instance.shape = type;
+  instance.shape = instanceShape(shape);
   instance.axiomId = axiom.id;
   instance.terminal = frame.step->argument;
   instance.seed = shape.seed;

@@ -158,13 +158,15 @@ uint32_t outputOf(const Node& node, uint32_t edge, uint32_t shape) {
   case kOpSetGeometry: return bit(node.argument);
   case kOpGrowAlong: return bit(kShapeBox);
   case kOpToFace: return bit(kShapeQuad);
+  case kOpRoof: return bit(kRectangleShapes & bit(shape) ? kShapeRoof : shape);
+  case kOpRoofFace: return shape == kShapeRoof ? bit(kShapeQuad) | bit(kShapeTrapezoid) : bit(shape);
   case kOpCompSplit:
     if (edge == 2) return isPrism(shape) ? bit(kShapeQuad) : 0u;
     if (isPrism(shape)) return bit(polygonOf(shape));
-    return shape != kShapeSphere && edge == 0 ? bit(shape) : 0u;
+    return (kFacedShapes >> shape & 1u) && edge == 0 ? bit(shape) : 0u;
   case kOpSubDiv:
     if (!isCut(shape, node.argument)) return bit(shape);
-    return node.cuts ? bit(pieceShape(shape)) : 0u;
+    return node.cuts && shape < kShapeSphere ? bit(pieceShape(shape)) : 0u;
   default: return bit(shape);
   }
 }

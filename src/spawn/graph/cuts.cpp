@@ -121,7 +121,8 @@ private:
     const Node node = graph_.nodes[index];
     const uint32_t shape = geometry & 0xff, polygon = geometry >> 8;
     const bool cut = node.op == kOpSubDiv && isCut(shape, node.argument);
-    if (cut && !cutInto(index, polygon)) return;
+    if (cut && shape > kShapeSphere) graph_.nodes[index].uncut = true;
+    if (cut && (shape > kShapeSphere || !cutInto(index, polygon))) return;
     for (uint32_t e = 0; e < node.edgeCount; ++e) {
       const uint32_t target = graph_.edges[node.firstEdge + e].target;
       if (outputOf(node, e, shape) == 0) continue;
@@ -134,6 +135,11 @@ private:
         to = node.argument | node.argument2 << 8;
       } else if (node.op == kOpGrowAlong || node.op == kOpToFace) {
         to = (node.op == kOpGrowAlong ? kShapeBox : kShapeQuad) | kQuadPolygon << 8;
+      } else if (node.op == kOpRoof && (kRectangleShapes >> shape & 1)) {
+        to = kShapeRoof;
+      } else if (node.op == kOpRoofFace && shape == kShapeRoof) {
+        arrive(target, kShapeTrapezoid);
+        to = kShapeQuad | kQuadPolygon << 8;
       } else if (node.op == kOpExtrude && isPolygon(shape)) {
         to = prismOf(shape) | polygon << 8;
       } else if (node.op == kOpCompSplit && e == 2) {

@@ -11,6 +11,8 @@
 namespace gpgp::spawn {
 
 using shader::kPolygonShapes;
+using shader::kRectangleShapes;
+using shader::kShapeRoof;
 constexpr uint32_t kMany = UINT32_MAX;       ///< successors: 1 to kMaxSuccessors
 constexpr uint32_t kNotWritten = UINT32_MAX; ///< kind: not one that the language writes by the operator's name
 constexpr uint32_t kAnyShape = UINT32_MAX;   ///< bits of shape types
@@ -54,7 +56,7 @@ constexpr bool areInOrder() {
   return std::size(kOperators) == shader::kOpCount;
 }
 static_assert(areInOrder(), "rows are in the order of their numbers, and relations are together");
-static_assert(shader::kOpCount <= 29, "GPGP_OPERATORS has other bits from 29 on (shaders/spawn/shared/operators.h)");
+static_assert(shader::kOpCount <= 28, "GPGP_OPERATORS has other bits from 28 on (shaders/spawn/shared/operators.h)");
 
 constexpr bool chooses(uint32_t op) { return kOperators[op].relation == Relation::Choosing; }
 constexpr bool isContext(uint32_t op) { return kOperators[op].relation == Relation::Context; }

@@ -23,7 +23,9 @@ constexpr const char* kShapes[kShapeCount] = {"Triangle",
                                               "DynamicPolygon",
                                               "DynamicConvexRightPrism",
                                               "DynamicRightPrism",
-                                              "Sphere"};
+                                              "Sphere",
+                                              "Roof",
+                                              "Trapezoid"};
 
 /// A settled float: what the interpreter's arithmetic expects. Own test, as NaN must not pass.
 bool isSettled(uint32_t bits) {
