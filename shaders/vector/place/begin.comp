@@ -20,7 +20,7 @@ layout(set = 0, binding = kBindCounters, std430) writeonly buffer Counters { Can
 layout(set = 0, binding = kBindShapes, std430) writeonly buffer Shapes { vec4 shapes[]; };
 #if !SOFTWARE
 layout(set = 0, binding = kBindWords, std430) writeonly buffer Words { uvec4 words[]; };
-layout(set = 0, binding = kBindCounters, std430) buffer Counters { uvec4 counters[8]; }; // CanvasCounters
+layout(set = 0, binding = kBindCounters, std430) buffer Counters { uvec4 counters[9]; }; // CanvasCounters
 #endif
 #endif
 
@@ -34,7 +34,7 @@ void main() {
     counters = CanvasCounters(0, 0, header.pathCount, header.pathsDropped, header.wordLimit, header.entryLimit, 0, 0,
                               header.pathsNeeded, 0, 0, 0, 0, header.glyphs, header.glyphLimit, header.shapes,
                               header.shapeLimit, header.sources, header.sourceLimit, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-                              0, 0);
+                              0, 0, 0, 0, 0, 0);
   for (uint i = lane; i < header.sourceCount; i += lanes) items[i] = sourceOf(i);
   for (uint i = lane; i < header.tilesX * header.tilesY; i += lanes) bins[kFirstBin + i * kTileListWords] = 0;
 #else
@@ -42,7 +42,7 @@ void main() {
   for (uint i = lane; i < words.length(); i += lanes) words[i] = uvec4(0);
   if (lane == 0) {
     const uint before = counters[0].y; // entries of the recording before, or anything at all
-    for (uint k = 0; k < 8; ++k) counters[k] = uvec4(0, 0, 0, k == 5 ? min(before, header.entryLimit) : 0);
+    for (uint k = 0; k < 9; ++k) counters[k] = uvec4(0, 0, 0, k == 5 ? min(before, header.entryLimit) : 0);
   }
 #endif
   for (uint i = lane; i < header.itemCount; i += lanes) {

@@ -246,6 +246,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   canvasInfo.maxPaths = std::max(facts.paths, 1024u);
   canvasInfo.maxTileEntries = options.maxTileEntries;
   canvasInfo.targets = GPGP_CANVAS_TARGET_RGBA8;
+  canvasInfo.maxImages = static_cast<uint32_t>(images.pictures().size());
   const auto table = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
                                              std::pmr::get_default_resource());
   if (!table) throw Failure(table.error().text);

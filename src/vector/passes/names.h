@@ -19,7 +19,8 @@ enum Groups : uint32_t {
   kOnce,
   kClear,
   kFill,
-  kPresents
+  kPresents,
+  kImageTiles
 };
 constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
 enum Conditions : uint32_t {
@@ -52,6 +53,7 @@ enum Conditions : uint32_t {
   kAloneOne,
   kAloneDrawings,
   kSiftPlain,
+  kImagePages, // of images, more than one
   kPresent = 48 // by target
 };
 static_assert(kPresent + 2 < core::kMaxConditions);

@@ -10,9 +10,11 @@ core::PassList describePasses(const CanvasSizes& sizes, const core::Device& devi
   addMark(builder);
   if (sizes.software) {
     addSoftwareFill(builder);
+    addImages(builder);
     addSoftwareRaster(builder);
   } else {
     addFill(builder);
+    addImages(builder);
     addRaster(builder);
   }
   if (sizes.layers.pixels) addLayers(builder);
