@@ -1,6 +1,6 @@
 /* gpgp ui: lists of shapes, images, text and drawings for user interfaces; panels in the world; hit tests.
  *
- *   list   Shapes, images, nine-slices, text and drawings in painting order, with stacks of transforms, clips and
+ *   list   Shapes, images, nine-slices, triangles, text and drawings in painting order, with stacks of transforms, clips and
  *          opacity. A list is filled anew every frame, or kept.
  *
  *   gpgpCreateList -> each frame: gpgpResetList, gpgpPush..., gpgpAdd..., gpgpPopState
@@ -144,6 +144,45 @@ typedef struct GpgpListShape {
  *  error no shape has been added. @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpAddShapes(GpgpList list, const GpgpListShape* shapes, uint32_t count);
 
+/** A corner of triangles. */
+typedef struct GpgpListVertex {
+  float x, y;       /**< in the current space, within +-1e7 there and after the translations and scales pushed */
+  uint8_t color[4]; /**< red, green, blue, alpha */
+  float u, v;       /**< texture coordinates, within +-1e6; 0 to 1 across the image. Ignored without an image. */
+} GpgpListVertex;
+
+/** No image. */
+#define GPGP_IMAGE_NONE UINT32_MAX
+
+/** Triangles as UI toolkits make them: in painting order, each on top of those before it, with colours and texture
+ *  coordinates that change linearly between the corners. Corners may run either way round. */
+typedef struct GpgpListTriangles {
+  const GpgpListVertex* vertices;
+  uint32_t vertexCount;
+  /** Three for each triangle, below vertexCount: uint16_t or uint32_t. NULL: each three vertices are a triangle, and
+   *  indexCount and indexType are ignored. */
+  const void* indices;
+  uint32_t indexCount;
+  VkIndexType indexType;        /**< VK_INDEX_TYPE_UINT16 or VK_INDEX_TYPE_UINT32 */
+  GpgpImageEncoding encoding;   /**< of the vertices' colours */
+  VkBool32 premultiplied;       /**< VK_TRUE: colours are multiplied by alpha, as they are encoded */
+  /** Index into GpgpCanvasInfo::images, counted from the item's firstImage, below GPGP_MAX_IMAGES: colours multiply the
+   *  image. Or GPGP_IMAGE_NONE. */
+  uint32_t image;
+  uint64_t id; /**< chosen by the engine, returned by gpgpHitTest; or GPGP_ID_NOT_HIT */
+} GpgpListTriangles;
+
+/** Paints triangles on top of what is in the list. Each counts as a shape (maxShapes, maxPaths); those without extent
+ *  or whose corners are all transparent are left out. They are one entry for hit tests.
+ *
+ *  Where triangles share two corners, each sample of a pixel lies in one of them, under every transform: there are no
+ *  seams, and nothing is painted twice. Edges are as smooth as GpgpCanvasInfo::samples makes them, and take no part in
+ *  exactArea. With samples 1, each pixel is painted whole or not at all, by its middle. Colours are interpolated as the
+ *  canvas mixes them (blendSrgb), premultiplied or straight as they are given, and in perspective.
+ *  Errors: INVALID_ARGUMENT (the message names vertex or index), UNSUPPORTED (2^32 triangles), OUT_OF_HOST_MEMORY.
+ *  After an error nothing has been added. @threads handle @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpAddTriangles(GpgpList list, const GpgpListTriangles* triangles);
+
 /** Paints glyphs on top of what is in the list, in the current space. The list does not keep the glyph set alive: it
  *  must exist whenever a recording or hit test shows the list.
  *  Errors: INVALID_ARGUMENT, INVALID_HANDLE, OUT_OF_HOST_MEMORY. @threads handle @lifetime call */
@@ -192,9 +231,9 @@ typedef struct GpgpHitTestInfo {
 /** What lies under a point. */
 typedef struct GpgpHit {
   uint32_t item;  /**< index of the item; GPGP_HIT_NONE: nothing was hit, and all other fields are 0 */
-  uint32_t entry; /**< lists: index among the shapes, texts and drawings added to the list; otherwise 0 */
+  uint32_t entry; /**< lists: index among the shapes, triangles (of one call), texts and drawings added; otherwise 0 */
   uint32_t glyph; /**< texts: index of the glyph instance; otherwise 0 */
-  uint32_t path;  /**< drawings and glyphs: index of the path; otherwise 0 */
+  uint32_t path;  /**< drawings and glyphs: index of the path; triangles: of the triangle; otherwise 0 */
   uint64_t id;    /**< lists: the entry's ID; otherwise 0 */
   float x, y;     /**< the point in drawing or text space, or in the space where the list's entry was added */
 } GpgpHit;

@@ -501,6 +501,13 @@ typedef struct GpgpCanvasCreateInfo {
    *  maxTileEntries. Each takes 16 bytes. Where they do not suffice, the first drawing that is drawn by patches and
    *  everything painted after it are left out. */
   uint32_t maxTilePatches;
+  /** Images in one recording, at most GPGP_MAX_IMAGES; 0: 8. Rounded up to a multiple of 8. */
+  uint32_t maxImages;
+  /** Pixels that paths with images cover in recordings of more than 8 images, at most 2^28; 0: maxWidth x maxHeight. Such
+   *  recordings find the colours of images before they rasterise, 8 images at a time: a path takes the tiles of 8 x 8
+   *  pixels of its box on the canvas. A pixel takes 8.25 bytes, on canvases with maxImages above 8. Paths that find no
+   *  room are left out, and the report's status is BUDGET_EXCEEDED. */
+  uint32_t maxImagePixels;
 } GpgpCanvasCreateInfo;
 #define GPGP_CANVAS_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO)
 
@@ -584,7 +591,9 @@ extern "C" {
   { .transform = {1, 0, 0, 1, 0, 0}, .opacity = 1 }
 #endif
 
-enum { GPGP_MAX_IMAGES = 8 }; /**< Images that the items of one recording can paint with. */
+/** Images that the items of one recording can paint with at most. Each canvas has room for as many as it was made for
+ *  (GpgpCanvasCreateInfo::maxImages). */
+enum { GPGP_MAX_IMAGES = 1024 };
 
 /** How an image encodes colours, as a shader receives them from the sampler. */
 typedef int32_t GpgpImageEncoding;
@@ -638,7 +647,7 @@ typedef struct GpgpCanvasInfo {
   VkBool32 exactArea;
   VkBool32 blendSrgb;            /**< VK_TRUE: colours are mixed as sRGB encodes them, as SVG renderers do. */
   const GpgpCanvasImage* images; /**< the images that items paint with */
-  uint32_t imageCount;           /**< at most GPGP_MAX_IMAGES */
+  uint32_t imageCount;           /**< at most GpgpCanvasCreateInfo::maxImages */
 } GpgpCanvasInfo;
 #define GPGP_CANVAS_INFO_INIT GPGP_INIT(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO)
 
@@ -707,6 +716,8 @@ typedef struct GpgpCanvasReport {
   uint32_t layerOperationsGiven; /**< maxLayerOperations; 0 without maxLayerPixels */
   uint32_t tilePatches;          /**< needed by the paths that got tile words */
   uint32_t tilePatchesGiven;     /**< maxTilePatches; 0 with GPGP_CANVAS_FLATTENED */
+  uint32_t imagePixels;          /**< needed by recordings of more than 8 images; 0 by others */
+  uint32_t imagePixelsGiven;     /**< maxImagePixels; 0 where maxImages is at most 8 */
 } GpgpCanvasReport;
 #define GPGP_CANVAS_REPORT_INIT GPGP_INIT(GpgpCanvasReport, GPGP_STRUCTURE_CANVAS_REPORT)
 

@@ -79,6 +79,15 @@ GpgpResult GPGP_CALL gpgpAddShapes(GpgpList handle, const GpgpListShape* shapes,
   });
 }
 
+GpgpResult GPGP_CALL gpgpAddTriangles(GpgpList handle, const GpgpListTriangles* triangles) {
+  return withList("gpgpAddTriangles", handle, [&](Call&, List& list) -> Result<void> {
+    if (!triangles) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "triangles is NULL");
+    if (triangles->vertexCount && !triangles->vertices)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "vertices is NULL, but vertexCount is %u", triangles->vertexCount);
+    return list.addTriangles(*triangles);
+  });
+}
+
 GpgpResult GPGP_CALL gpgpAddText(GpgpList handle, GpgpAsset glyphSet, const GpgpGlyphInstance* glyphs, uint32_t count,
                                  uint64_t id) {
   return withList("gpgpAddText", handle, [&](Call& call, List& list) -> Result<void> {

@@ -204,6 +204,11 @@ GpgpResult GPGP_CALL gpgpCreateCanvas(GpgpContext handle, const GpgpCanvasCreate
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "method is %d", info->method);
     if (info->maxTilePatches > 1u << 28)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTilePatches is %u; at most 268435456", info->maxTilePatches);
+    if (info->maxImages > GPGP_MAX_IMAGES)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxImages is %u; at most %u (GPGP_MAX_IMAGES)", info->maxImages,
+                       GPGP_MAX_IMAGES);
+    if (info->maxImagePixels > 1u << 28)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxImagePixels is %u; at most 268435456", info->maxImagePixels);
     auto made = Canvas::create(**context, *info);
     if (!made) return made.error();
     *canvas = adopt<GpgpRecorder>(**context, std::move(*made));

@@ -78,6 +78,8 @@ struct Pass {
   uint32_t level = 0;              ///< left out of recordings that ask for as many levels or fewer
   bool beside = false;             ///< needs no barrier after the pass before: what both write, they add to, or
                                    ///< only one of them is recorded
+  bool paged = false;              ///< dispatched for each page of textures that a recording gives, with the page's
+                                   ///< number and constant as push constants
   bool stepped = false;            ///< dispatched as a recording's steps say, any number of times; such passes lie in a
                                    ///< row
   bool barrierBefore = false;      ///< worked out by finish()
@@ -94,7 +96,8 @@ struct PassList {
   ResourceIndex report = UINT32_MAX; ///< a scratch resource: its first reportBytes are copied to the host at the end,
                                      ///< unless passes write it to a resource of kind report
   uint32_t reportBytes = 0;
-  uint32_t groupCounts = 0; ///< how many workgroup counts a recording gives
+  uint32_t groupCounts = 0;  ///< how many workgroup counts a recording gives
+  uint32_t texturePages = 1; ///< a recording's textures at most: as many times those of the list
 
   // worked out by finish()
   std::pmr::vector<VkDeviceSize> scratchOffsets; ///< by resource

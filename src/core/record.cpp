@@ -209,9 +209,9 @@ void Recorder::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxRes
       write.pImageInfo = &images[i];
       write.pBufferInfo = nullptr;
     } else if (resource.kind == ResourceKind::texture) {
-      if (!binding.texture.imageView) continue; // passes that use it are skipped
+      if (!binding.texture.imageView) continue; // passes that use it are skipped, or textures come in pages
       images[i] = binding.texture;
-      write.dstSet = textureSets_[slot];
+      write.dstSet = textureSets_[slot * passes_.texturePages];
       write.dstBinding = i - firstTexture_;
       write.pImageInfo = &images[i];
       write.pBufferInfo = nullptr;
@@ -333,6 +333,21 @@ Result<void> Recorder::record(const Record& record) {
       std::memcpy(constants_.mapped() + slot * passes_.constantsBytes + passes_.scratchOffsets[i], data.data(),
                   data.size());
   writeDescriptors(slot, record.bindings, scratch, scratchOffset, record.reports);
+  const VkDescriptorSet* const textureSets = textureSets_.empty() ? nullptr : &textureSets_[slot * passes_.texturePages];
+  const uint32_t pages = static_cast<uint32_t>(record.pageConstants.size());
+  for (uint32_t page = 0; page < pages; ++page) {
+    const VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                     nullptr,
+                                     textureSets[page],
+                                     0,
+                                     0,
+                                     textureCount_, // bindings of one type go on from one to the next
+                                     descriptorType(ResourceKind::texture),
+                                     &record.pages[size_t(page) * textureCount_],
+                                     nullptr,
+                                     nullptr};
+    vk.UpdateDescriptorSets(context.device.device, 1, &write, 0, nullptr);
+  }
 
   // Where a buffer resource lies, for transfers and indirect arguments.
   const auto place = [&](ResourceIndex i) -> std::pair<VkBuffer, VkDeviceSize> {
@@ -356,8 +371,10 @@ Result<void> Recorder::record(const Record& record) {
   if (timestamps.queryPool)
     vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps.queryPool, query++);
   vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0, 1, &sets_[slot], 0, nullptr);
-  if (!textureSets_.empty() && record.bindings[firstTexture_].texture.imageView)
-    vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 1, 1, &textureSets_[slot], 0, nullptr);
+  const auto bindPage = [&](uint32_t page) {
+    vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 1, 1, &textureSets[page], 0, nullptr);
+  };
+  if (textureSets && (pages || record.bindings[firstTexture_].texture.imageView)) bindPage(0);
   VkPipeline bound = VK_NULL_HANDLE;
   const VkShaderStageFlags stages =
       VkShaderStageFlags(VK_SHADER_STAGE_COMPUTE_BIT) |
@@ -414,7 +431,15 @@ Result<void> Recorder::record(const Record& record) {
           vk.CmdDispatchIndirect(cmd, buffer, offset + pass.offset);
         } else {
           const auto& groups = record.groups[pass.groups];
-          if (groups[0] && groups[1] && groups[2]) vk.CmdDispatch(cmd, groups[0], groups[1], groups[2]);
+          for (uint32_t page = 0; pass.paged && page < pages; ++page) {
+            const uint32_t constants[] = {page, record.pageConstants[page]};
+            bindPage(page);
+            vk.CmdPushConstants(cmd, layout_, stages, 0, sizeof constants, constants);
+            vk.CmdDispatch(cmd, groups[0], groups[1], groups[2]);
+          }
+          if (pass.paged)
+            bindPage(0);
+          else if (groups[0] && groups[1] && groups[2]) vk.CmdDispatch(cmd, groups[0], groups[1], groups[2]);
         }
       }
       endLabel(cmd);

@@ -117,9 +117,9 @@ Result<void> Recorder::init(PassList passes, std::span<const DrawShaders> draws)
   uint32_t sizeCount = 1;
   if (uniforms) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, uniforms * slotCount};
   if (images) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, images * slotCount};
-  if (textures) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures * slotCount};
+  if (textures) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures * slotCount * passes_.texturePages};
   VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
-  poolInfo.maxSets = textures ? 2 * slotCount : slotCount;
+  poolInfo.maxSets = textures ? (1 + passes_.texturePages) * slotCount : slotCount;
   poolInfo.poolSizeCount = sizeCount;
   poolInfo.pPoolSizes = sizes.data();
   result = device.vk.CreateDescriptorPool(device.device, &poolInfo, nullptr, &pool_);
@@ -133,8 +133,11 @@ Result<void> Recorder::init(PassList passes, std::span<const DrawShaders> draws)
   result = device.vk.AllocateDescriptorSets(device.device, &allocateInfo, sets_.data());
   if (result != VK_SUCCESS) return vulkanError(result, "vkAllocateDescriptorSets");
   if (textures) {
-    std::fill(layouts.begin(), layouts.end(), textureLayout_);
-    textureSets_.resize(slotCount);
+    textureCount_ = textures;
+    layouts.assign(slotCount * passes_.texturePages, textureLayout_);
+    textureSets_.resize(layouts.size());
+    allocateInfo.descriptorSetCount = static_cast<uint32_t>(layouts.size());
+    allocateInfo.pSetLayouts = layouts.data();
     result = device.vk.AllocateDescriptorSets(device.device, &allocateInfo, textureSets_.data());
     if (result != VK_SUCCESS) return vulkanError(result, "vkAllocateDescriptorSets");
   }

@@ -10,9 +10,9 @@
 
 namespace gpgp::core {
 
-constexpr uint32_t kMaxResources = 36;
-constexpr uint32_t kMaxGroupCounts = 16;
-constexpr uint32_t kMaxConditions = 52;
+constexpr uint32_t kMaxResources = 40;
+constexpr uint32_t kMaxGroupCounts = 20;
+constexpr uint32_t kMaxConditions = 56;
 constexpr uint32_t kMaxTargets = 16;
 constexpr uint32_t kMaxDrawForms = 2;
 
@@ -46,6 +46,10 @@ struct Record {
   uint32_t replacedShader = UINT32_MAX; ///< passes with this shader run another pipeline of the same layout
   VkPipeline replacement = VK_NULL_HANDLE;
   std::span<const Step> steps; ///< in order, each behind a barrier; recorded where the first stepped pass lies
+  /// Where textures come in pages: all of them, those of the list again and again; their bindings are then not looked
+  /// at. Passes that are not paged have the first page.
+  std::span<const VkDescriptorImageInfo> pages;
+  std::span<const uint32_t> pageConstants; ///< one a page
   bool reports = false;        ///< its passes write the whole report to the resource of that kind: nothing is copied
 };
 
@@ -163,7 +167,7 @@ private:
   uint32_t drawForms_ = 0;
   bool draws_ = false;
   VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE, textureLayout_ = VK_NULL_HANDLE;
-  uint32_t firstTexture_ = 0; // textures lie in a row
+  uint32_t firstTexture_ = 0, textureCount_ = 0; // textures lie in a row
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
   VkDescriptorPool pool_ = VK_NULL_HANDLE;
   std::pmr::vector<VkDescriptorSet> sets_, textureSets_;

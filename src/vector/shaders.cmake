@@ -128,6 +128,11 @@ foreach(form rich rich_one rich_images)
 endforeach()
 gpgp_vector_shader(raster_glyphs glyphs/raster_glyphs.comp TARGETS DEFINES ${plain})
 
+# Colours of images, where there are more than a shader can name
+set(colors PAINTS=1 IMAGES=1 PROJECTIVE=1 ONE_DRAWING=0 COLORS_ALONE=1)
+gpgp_vector_shader(images raster/images.comp DEFINES ${colors})
+gpgp_vector_shader(images_software raster/images.comp DEFINES ${colors} SOFTWARE=1)
+
 # Layers
 gpgp_vector_shader(operate layers/operate.comp OPERATIONS DEFINES ONE_DRAWING=0)
 gpgp_vector_shader(present layers/present.comp TARGETS DEFINES ONE_DRAWING=0)

@@ -155,6 +155,20 @@ struct CpuTest : CanvasTest {
     return text;
   }
 
+  /// A strip in a box, some of it turned over.
+  static std::vector<GpgpListVertex> makeTriangles(Dice& dice, float x, float y, float w, float h) {
+    std::vector<GpgpListVertex> corners(5);
+    for (GpgpListVertex& v : corners) {
+      v.x = x + dice.between(0, w), v.y = y + dice.between(0, h);
+      v.u = dice.between(-0.5f, 1.5f), v.v = dice.between(-0.5f, 1.5f);
+      v.color[3] = static_cast<uint8_t>(dice.oneIn(2) ? 255 : dice.upTo(256));
+      for (int k = 0; k < 3; ++k) v.color[k] = static_cast<uint8_t>(dice.upTo(v.color[3] + 1u));
+    }
+    std::vector<GpgpListVertex> strip;
+    for (size_t i = 0; i + 3 <= corners.size(); ++i) strip.insert(strip.end(), {corners[i], corners[i + 1], corners[i + 2]});
+    return strip;
+  }
+
   void fillList(Dice& dice, const Kinds& kinds, TestList& list, RandomPaths& paints,
                 const std::vector<GpgpAsset>& drawings) {
     uint32_t depth = 0, fades = 0, clips = 0;
@@ -163,7 +177,7 @@ struct CpuTest : CanvasTest {
       const float x = dice.between(-10, 50), y = dice.between(-10, 40), w = dice.between(4, 40),
                   h = dice.between(4, 40);
       GpgpListShape shape = rectangle(x, y, x + w, y + h, dice.color());
-      const uint32_t action = dice.upTo(16);
+      const uint32_t action = dice.upTo(18);
       const auto push = [&](int what) { pushed.push_back(what), ++depth; };
       if (action < 2 && depth < 6) {
         if (kinds.projective && dice.oneIn(3))
@@ -210,6 +224,13 @@ struct CpuTest : CanvasTest {
       }
       if (action == 9 && kinds.severalDrawings) {
         list.add(drawings[dice.upTo(static_cast<uint32_t>(drawings.size()))]);
+        continue;
+      }
+      if (action >= 16) {
+        const bool textured = kinds.images && dice.oneIn(2);
+        if (!textured && !kinds.gradients) continue;
+        list.add(makeTriangles(dice, x, y, w, h), !dice.oneIn(3), textured ? dice.upTo(2) : GPGP_IMAGE_NONE,
+                 dice.oneIn(2) ? GPGP_IMAGE_SRGB : GPGP_IMAGE_LINEAR);
         continue;
       }
       if (action == 10) shape = rounded(shape, 4, 8, 2, 6, dice.oneIn(2) ? 3.0f : 0.0f);

@@ -1098,12 +1098,15 @@ TEST(SvgImport, EmbeddedImagesGoToWhoeverDecodes) {
   refused("<image" + data + "/>", "line 2: <image> holds nothing that can be decoded; not supported");
   seen.decodes = true;
   std::string many;
-  for (const char c : std::string("ABCDEFGHII")) // the ninth twice
-    many += "<image width='9' height='9' href='data:;base64,AAA" + std::string(1, c) + "'/>\n";
+  for (int i = 0; i < GPGP_MAX_IMAGES + 2; ++i) { // the first too many twice
+    const int which = std::min(i, GPGP_MAX_IMAGES);
+    const char digits[] = {'A', char('A' + which / 676), char('A' + which / 26 % 26), char('A' + which % 26), 0};
+    many += std::string("<image width='9' height='9' href='data:;base64,") + digits + "'/>\n";
+  }
   messages.clear();
-  EXPECT_EQ(take(many, messages).paths.size(), 8u);
-  EXPECT_EQ(messages, (Texts{"line 10: <image> is one more than the 8 that a drawing can have; not supported",
-                             "line 11: <image> is one more than the 8 that a drawing can have; not supported"}));
+  EXPECT_EQ(take(many, messages).paths.size(), size_t(GPGP_MAX_IMAGES));
+  EXPECT_EQ(messages, (Texts{"line 1026: <image> is one more than the 1024 that a drawing can have; not supported",
+                             "line 1027: <image> is one more than the 1024 that a drawing can have; not supported"}));
 }
 
 TEST(SvgImport, ThePageIsWhatTheFileSays) {

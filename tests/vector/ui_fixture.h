@@ -36,6 +36,12 @@ struct TestList {
   TestList& add(GpgpAsset set, const std::vector<GpgpGlyphInstance>& glyphs, uint64_t id = 0) {
     return done(gpgpAddText(list, set, glyphs.data(), static_cast<uint32_t>(glyphs.size()), id));
   }
+  TestList& add(const std::vector<GpgpListVertex>& triangles, bool premultiplied = false,
+                uint32_t image = GPGP_IMAGE_NONE, GpgpImageEncoding encoding = GPGP_IMAGE_LINEAR, uint64_t id = 0) {
+    const GpgpListTriangles info{triangles.data(), static_cast<uint32_t>(triangles.size()), nullptr, 0,
+                                 VK_INDEX_TYPE_UINT16, encoding, premultiplied, image, id};
+    return done(gpgpAddTriangles(list, &info));
+  }
   GpgpCanvasItem item() const {
     GpgpCanvasItem item{nullptr, {1, 0, 0, 1, 0, 0}, 1};
     item.list = list;

@@ -106,6 +106,6 @@ void main() {
   if (lane == 0) {
     cut = wholeItems(cut);
     counters.cutPath = cut;
-    counters.pathsDropped = header.pathsDropped + header.pathCount - cut;
+    counters.pathsDropped = header.pathsDropped + header.pathCount - cut + counters.imagesDropped;
   }
 }

@@ -8,12 +8,30 @@
 #define SHARING coherent
 #include "vector/shared/canvas.glsl"
 #include "vector/shared/color.h"
+#include "vector/raster/image_colors.glsl"
 layout(local_size_x = 64) in;
 #include "vector/shared/scan.glsl"
 shared bool last;
 const uint kFewBins = 4; // more are dealt out to the workgroup
 shared uint wide[64], wideCount;
 shared uvec4 wideBins[64]; // left, top, right, bottom, exclusive
+
+// A path that paints with an image gets a place for its colours. One without room paints nothing.
+void storeImage(uint slot, uint path, inout PlacedPath p) {
+  const uint record = p.paint & ~kPaintsTriangle;
+  if (record == 0 || floatBitsToUint(fetch(slot, record + 1)).y < kPaintImage) return;
+  const uint tiles = (p.right - p.left) * (p.bottom - p.top);
+  const bool counted = counters.imageTiles < 1u << 30; // beyond, no sum is of use
+  const uint first = counted ? atomicAdd(counters.imageTiles, tiles) : ~0u;
+  if (first > header.imageTiles || tiles > header.imageTiles - first) {
+    atomicAdd(counters.imagesDropped, 1);
+    p.color = vec4(0);
+    return;
+  }
+  const uint which = atomicAdd(counters.storedImages, 1);
+  imageHeads[which] = uvec4(path, p.paint, first, 0);
+  p.paint = (p.paint & kPaintsTriangle) | kPaintsStored | which;
+}
 
 const uint kGrouped = 0x80000000u; // beside a path's number: it may need the general shader (lists.glsl)
 
@@ -42,6 +60,7 @@ void main() {
     const uint path = item.paths + (i - item.firstPath) * 3;
 #if !ONE_DRAWING
     const bool shaped = item.slot == kShapeSlot;
+    bool triangle = false;
 #else
     const bool shaped = false;
 #endif
@@ -50,8 +69,9 @@ void main() {
     if (shaped) {
 #if !ONE_DRAWING
       const ShapeRecord shape = shapeOf(item);
-      box = shape.box;
-      frame = shape.frame;
+      triangle = isTriangle(shape);
+      box = triangle ? triangleBox(shape) : shape.box;
+      if (!triangle) frame = shape.frame;
       color = vec4(item.color.rgb, 1);
       rest.x = shape.paint;
 #endif
@@ -72,10 +92,14 @@ void main() {
     p.item = itemIndex;
     p.paint = paint == 0 ? 0 : tablesOf(item.slot).paints + (paint - 1) * 4 + 1;
     p.group = ((rest.y | rest.z) == 0 ? 0 : path + 2 + 1) | ((item.clip | item.layer) == 0 ? 0 : kItemGrouped);
+#if !ONE_DRAWING
+    if (triangle) p.paint |= kPaintsTriangle;
+#endif
     p.color = blended(color.rgb, alpha, header.flags);
     if (p.paint != 0 && !shaped) p.color = vec4(alpha);
     const uint count = wordsOf(p);
     p.firstWord = count == 0 ? 0 : atomicAdd(counters.words, count);
+    if (header.imageTiles > 0 && count != 0 && p.color.a > 0) storeImage(item.slot, i, p);
     paths[i] = p;
     if (count != 0 && p.color.a > 0) {
       const uint which = i | (p.group != 0 || (p.paint != 0 && item.perspective.w > 0) ? kGrouped : 0);
@@ -133,6 +157,6 @@ void main() {
     counters.wordsGiven = header.wordLimit;
     counters.entriesGiven = header.entryLimit;
     counters.cutPath = cut;
-    counters.pathsDropped = header.pathsDropped + header.pathCount - cut;
+    counters.pathsDropped = header.pathsDropped + header.pathCount - cut + counters.imagesDropped;
   }
 }

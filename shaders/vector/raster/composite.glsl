@@ -5,15 +5,21 @@
 // inside a path nor edges shared by two paths let anything through. The first edge that a pixel meets counts by its
 // area; what lies behind is scaled to what that leaves.
 // PAINTS: whether there are gradients. RICH: whether there are groups and projective items. IMAGES: whether there are
-// images. TARGET: 0 the view alone, 1 an rgba8 image, 2 an rgba16f image (and the view, if one is given).
+// images. COLORS_ALONE: images.comp. TARGET: 0 the view alone, 1 an rgba8 image, 2 an rgba16f image (and the view, if one is given).
 #include "vector/shared/color.h"
 #include "vector/raster/composite.h"
 #include "vector/shared/entry.h"
 #if PAINTS
 #include "vector/raster/paint.glsl"
 #endif
+#define TRIANGLES (PAINTS && !ONE_DRAWING) // those of lists
+#if IMAGES
+#include "vector/raster/image_colors.glsl"
+#endif
 layout(set = 0, binding = kBindEntries, std430) readonly buffer Entries { uvec4 entries[]; };
+#if !COLORS_ALONE // what writes pixels of the canvas
 layout(set = 0, binding = kBindHistory, std430) writeonly buffer View { uvec2 view[]; };
+#endif
 #if TARGET == 1
 layout(set = 0, binding = kBindImage8, rgba8) uniform writeonly image2D image;
 #elif TARGET == 2
@@ -230,6 +236,51 @@ void applyClips(uint index, uint clip, uvec2 tile, uvec2 at, bool area, inout ui
 }
 #endif
 
+#if PAINTS
+// Where in the drawing the middle of a pixel's samples in a mask lies, and 1 / w there.
+struct Spot {
+  vec2 at;
+  float near;
+};
+Spot spotOf(ItemRecord item, uvec2 pixel, uint mask) {
+#if TRIANGLES
+  const vec2 middle = vec2(pixel) + middleOf(mask, header.samples);
+#else
+  const vec2 middle = vec2(pixel) + 0.5;
+#endif
+  Spot spot = Spot(item.inverse.xy * middle.x + item.inverse.zw * middle.y + item.offsets.xy, 1.0);
+#if PROJECTIVE
+  if (projects(item)) {
+    spot.near = 1.0 / (item.eye.x * middle.x + item.eye.y * middle.y + item.eye.z);
+    spot.at *= spot.near;
+  }
+#endif
+  return spot;
+}
+#if IMAGES
+Texture textureOf(ItemRecord item, uint paint, Spot spot) {
+  vec2 dx = item.inverse.xy, dy = item.inverse.zw;
+#if PROJECTIVE
+  if (projects(item)) {
+    dx = (dx - spot.at * item.eye.x) * spot.near;
+    dy = (dy - spot.at * item.eye.y) * spot.near;
+  }
+#endif
+  const uint record = (paint & ~kPaintsTriangle) - 1;
+#if TRIANGLES
+  if ((paint & kPaintsTriangle) != 0)
+    return textureAt(item, record, triangleWeights(shapeOf(item), spot.at), dx, dy);
+#endif
+  return textureAt(item, record, spot.at, dx, dy);
+}
+vec4 storedColor(uint paint, uvec2 pixel) {
+  const StoredImage image = storedImage(paint);
+  const uvec2 color = imageColors[colorPlace(image, paths[image.path], pixel)];
+  return vec4(unpackHalf2x16(color.x), unpackHalf2x16(color.y));
+}
+#endif
+#endif
+
 // Whether what is painted next counts by its area.
 bool countsArea() { return first || gap > 0; }
 
@@ -239,6 +290,11 @@ void paintOver(uint code, Edge edge, uvec2 at, uvec2 pixel, vec4 source, uvec4 p
   const bool area = countsArea();
   int difference;
   uint mask = maskOf(code, edge, at.x, area, difference);
+#if TRIANGLES
+  const bool triangle = (paint.y & kPaintsTriangle) != 0;
+  if (triangle) difference = 0; // what abuts shares pixels sample by sample
+  const uint own = mask;
+#endif
 #if RICH
   toLayer(paint.x, paint.z);
   if (alive == 0 && gap <= 0) return; // the group is hidden, not what lies behind it
@@ -249,28 +305,35 @@ void paintOver(uint code, Edge edge, uvec2 at, uvec2 pixel, vec4 source, uvec4 p
 #if PAINTS
   if (paint.y != 0) {
     const ItemRecord item = items[paint.x];
-    const vec2 middle = vec2(pixel) + 0.5;
-    vec2 at = item.inverse.xy * middle.x + item.inverse.zw * middle.y + item.offsets.xy;
-    float near = 1.0;
-#if PROJECTIVE
-    if (projects(item)) {
-      near = 1.0 / (item.eye.x * middle.x + item.eye.y * middle.y + item.eye.z);
-      at *= near;
-    }
+#if TRIANGLES
+    const Spot spot = spotOf(item, pixel, triangle ? own : all);
+#else
+    const Spot spot = spotOf(item, pixel, all);
 #endif
 #if IMAGES
-    if (floatBitsToUint(fetch(item.slot, paint.y + 1)).y >= kPaintImage) {
-      vec2 dx = item.inverse.xy, dy = item.inverse.zw;
-#if PROJECTIVE
-      if (projects(item)) {
-        dx -= at * item.eye.x;
-        dy -= at * item.eye.y;
-      }
+    bool imaged = true;
 #endif
-      source *= imageAt(item, paint.y - 1, at, dx * near, dy * near);
+#if TRIANGLES
+    if (triangle) {
+      const ShapeRecord shape = shapeOf(item);
+      source *= triangleColor(shape, triangleWeights(shape, spot.at).at);
+#if IMAGES
+      imaged = paint.y != kPaintsTriangle;
+#endif
     } else
 #endif
-    source *= gradientAt(item.slot, paint.y - 1, at);
+#if IMAGES
+    if ((paint.y & kPaintsStored) == 0 && floatBitsToUint(fetch(item.slot, paint.y + 1)).y < kPaintImage) {
+      imaged = false;
+      source *= gradientAt(item.slot, paint.y - 1, spot.at);
+    }
+    if (imaged) {
+      if ((paint.y & kPaintsStored) != 0) source *= storedColor(paint.y, pixel);
+      else source *= imageAt(textureOf(item, paint.y, spot));
+    }
+#else
+    source *= gradientAt(item.slot, paint.y - 1, spot.at);
+#endif
   }
 #endif
   float weight;
@@ -309,7 +372,8 @@ void paintOver(uint code, Edge edge, uvec2 at, uvec2 pixel, vec4 source, uvec4 p
   }
 }
 
-#if SOFTWARE // writes the view or the image, as both would convert for both
+#if COLORS_ALONE
+#elif SOFTWARE // writes the view or the image, as both would convert for both
 vec4 storedColor(vec4 color) {
 #if TARGET
   return targetColor(color, header.flags);

@@ -43,6 +43,9 @@ vec4 gradientAt(uint slot, uint paint, vec2 at) {
 }
 
 #if IMAGES
+#ifndef IMAGES_HOLD
+#define IMAGES_HOLD header.images
+#endif
 #define IMAGE(n) layout(set = 1, binding = n) uniform sampler2D image##n;
 IMAGE(0) IMAGE(1) IMAGE(2) IMAGE(3) IMAGE(4) IMAGE(5) IMAGE(6) IMAGE(7)
 
@@ -65,8 +68,13 @@ vec4 sampleImage(uint i, vec2 at, vec2 dx, vec2 dy) { OF_IMAGE(i, SAMPLE) }
 ivec2 sizeOfImage(uint i) { OF_IMAGE(i, SIZE) }
 int levelsOfImage(uint i) { OF_IMAGE(i, LEVELS) }
 
-// An image's colour at a point of the drawing, premultiplied; dx and dy: how far the point moves from pixel to pixel.
-vec4 imageAt(ItemRecord item, uint paint, vec2 at, vec2 dx, vec2 dy) {
+// Where on which image a paint paints, and how far that moves from pixel to pixel.
+struct Texture {
+  uint image;
+  vec2 at, dx, dy;
+};
+// At a point of the drawing; dx and dy: how far the point moves from pixel to pixel.
+Texture textureAt(ItemRecord item, uint paint, vec2 at, vec2 dx, vec2 dy) {
   const PaintRecord p = paintOf(item.slot, paint);
   const uint image = item.firstImage + p.firstStop;
   vec2 u = paintPoint(p.matrix, p.origin, at);
@@ -83,7 +91,23 @@ vec4 imageAt(ItemRecord item, uint paint, vec2 at, vec2 dx, vec2 dy) {
     ux *= slope;
     uy *= slope;
   }
-  const uint holds = header.images >> image * kImageBits;
+  return Texture(image, u, ux, uy);
+}
+#if !ONE_DRAWING
+// The same in a triangle.
+Texture textureAt(ItemRecord item, uint paint, TriangleWeights w, vec2 dx, vec2 dy) {
+  const PaintRecord p = paintOf(item.slot, paint);
+  return Texture(item.firstImage + p.firstStop, triangleTexture(p.matrix, p.origin, w.at),
+                 triangleTexture(p.matrix, p.origin, w.across * dx.x + w.down * dx.y),
+                 triangleTexture(p.matrix, p.origin, w.across * dy.x + w.down * dy.y));
+}
+#endif
+
+// An image's colour there, premultiplied.
+vec4 imageAt(Texture there) {
+  const uint image = there.image;
+  vec2 u = there.at, ux = there.dx, uy = there.dy;
+  const uint holds = IMAGES_HOLD >> image * kImageBits;
   const bool byTexel = (holds & kImageByTexel) != 0;
   const vec2 from = u;
   ivec2 whole = ivec2(1);

@@ -24,8 +24,9 @@ GPGP_CONST int kBindFlatSegments = 26;
 GPGP_CONST int kBindRows = 27;
 GPGP_CONST int kBindShapes = 28;
 GPGP_CONST int kBindAside = 29;
-GPGP_CONST int kBindPatchBlocks = 33; // behind those of layers (layers/operation.h)
-GPGP_CONST int kBindTilePatches = 34;
+GPGP_CONST int kBindImageColors = 33; // behind those of layers (layers/operation.h)
+GPGP_CONST int kBindPatchBlocks = 34;
+GPGP_CONST int kBindTilePatches = 35;
 
 // A curve of a drawing: a cubic that never turns in x or y, from its top point down (lines and quadratics elevated).
 // Control points are relative to the start, which keeps their low bits.
@@ -132,7 +133,7 @@ struct PlacementRecord {
 
 // A rectangle with round corners, or what lies between two of them, in a frame of its own: the point (x, y) of the
 // frame lies at origin + x axis + y (-axis.y, axis.x). Radii are of the corners top left, top right, bottom right,
-// bottom left.
+// bottom left. Or a triangle (triangle.h).
 struct ShapeRecord {
   vec4 box;     // left, top, right, bottom
   vec4 radii;   // along x
@@ -140,7 +141,7 @@ struct ShapeRecord {
   float border; // width of what is painted inside the edge; 0: everything
   float ratio;  // of radii along y to those along x
   uint paint;   // 1 + index of the gradient or image; 0: none
-  uint kind;    // kShapeRound
+  uint kind;    // kShapeRound, kShapeTriangle
 };
 
 // A clip of items: a path of the recording that paints nothing.
@@ -155,11 +156,19 @@ struct SlotRecord {
   uint paints, stops, clips, layers;
 };
 
+// A path on the canvas that paints with an image of a recording with more than a page of them: its colours are found
+// before the raster, tile by tile of its box (images.comp).
+struct StoredImage {
+  uint path, paint; // as the path's paint was
+  uint firstTile;   // of its colours, 64 pixels each
+  uint pad0;
+};
+
 // A path on the canvas.
 struct PlacedPath {
   uint left, top, right, bottom; // the box of its tiles, right and bottom exclusive
   uint firstWord;                // of its tile words; one row of tiles has wordsOf(left, right) of them
-  uint item, paint;              // paint: 1 + the paint's vec4 in the slot's buffer; 0: none
+  uint item, paint;              // paint: 1 + the paint's vec4 in the slot's buffer; 0: none; and kPaints...
   uint group;                    // 1 + the vec4 of its clip and layer (PathRecord) in the slot's buffer; 0: neither;
                                  // and kItemGrouped where its item has a clip or a layer
   vec4 color;                    // premultiplied, times the item's opacity
@@ -194,6 +203,8 @@ struct CanvasHeader {
   uint layerPixels, layerOperations; // needed
   uint assets;                       // where the SlotRecords begin, in vec4
   uint patchTable;                   // where the PatchTableRecord lies, in vec4; 0: patches draw no item
+  uint imageTiles;                   // room for as many of StoredImages; 0: the recording has at most a page of images
+  uint pad0, pad1, pad2;
   vec4 background;
 };
 
@@ -220,7 +231,8 @@ struct CanvasCounters {
   uint patchBlocks;                  // listed: squares of 8 x 8 tiles that a patch's curves pass
   uint tilePatches;                  // needed: patches in tiles that their curves pass
   uint patchesX, patchesY, patchesZ; // workgroups of the pass that fills from them
-  uint pad0, pad1, pad2;
+  uint imageTiles, storedImages;         // needed; those that have room
+  uint imagesDropped;                    // paths whose images have none
 };
 
 // A CPatch (patches/tile.h) of a drawing's table: the box that it lies in: left, top, right, bottom; up to
@@ -268,7 +280,7 @@ struct FlatSegmentRecord {
              // scissor
 };
 
-GPGP_CONST uint kMaxImages = 8u;
+GPGP_CONST uint kPageImages = 8u; // that a shader can name
 GPGP_CONST uint kImageBits = 4u;
 GPGP_CONST uint kImagePremultiplied = 1u; // its colours have been multiplied by its alpha
 GPGP_CONST uint kImageEncoded = 2u;       // what sampling gives is encoded as sRGB encodes light
@@ -283,7 +295,11 @@ GPGP_CONST uint kBufferMask = 15u, kAssetBit = 4u, kMaxAssets = 2047u;
 GPGP_CONST uint kShapeSlot = kMaxBuffers;
 GPGP_CONST uint kSlots = 2u; // whose records lie behind the header: of asset 0 and, for recordings of one, of asset 1
 GPGP_CONST uint kSlotBit = 16u, kSmallGlyphBit = 31u;
-GPGP_CONST uint kShapeRound = 1u;
+GPGP_CONST uint kShapeRound = 1u, kShapeTriangle = 2u;
+GPGP_CONST uint kTriangleStraight = 1u; // its colours are multiplied by their alpha where they are painted
+GPGP_CONST uint kTriangleEncoded = 2u;  // on the host: they are encoded as sRGB encodes them
+GPGP_CONST uint kPaintsTriangle = 0x80000000u;
+GPGP_CONST uint kPaintsStored = 0x40000000u; // with the index of a StoredImage
 GPGP_CONST float kUnbounded = 1e30f; // sides of a scissor that is none
 GPGP_CONST uint kItemGrouped = 0x80000000u;
 GPGP_CONST uint kWriteView = 1u;
@@ -338,7 +354,7 @@ static_assert(sizeof(gpgp::shader::ItemRecord) == 160 && sizeof(gpgp::shader::Sh
               sizeof(gpgp::shader::ClipRecord) == 16 && sizeof(gpgp::shader::LayerRecord) == 16 &&
               sizeof(gpgp::shader::SlotRecord) == 16 && sizeof(gpgp::shader::PlacementRecord) == 48 &&
               sizeof(gpgp::shader::BoxedPath) == 48 && sizeof(gpgp::shader::TileWord) == 16 &&
-              sizeof(gpgp::shader::CanvasHeader) == 160 && sizeof(gpgp::shader::CanvasCounters) == 160 &&
+              sizeof(gpgp::shader::CanvasHeader) == 176 && sizeof(gpgp::shader::CanvasCounters) == 160 &&
               sizeof(gpgp::shader::TilePatchRecord) == 48 && sizeof(gpgp::shader::PatchItemRecord) == 112 &&
               sizeof(gpgp::shader::PatchPlaceRecord) == 16 && sizeof(gpgp::shader::PatchTableRecord) == 32 &&
               sizeof(gpgp::shader::FlatSegmentRecord) == 24);

@@ -4,14 +4,14 @@
 // result of one expression, so outlines are closed bit for bit, and rectangles that abut share their edges.
 #ifndef GPGP_SHADERS_VECTOR_SHAPE_H
 #define GPGP_SHADERS_VECTOR_SHAPE_H
-#include "vector/shared/layout.h"
+#include "vector/shared/triangle.h"
 
 GPGP_SHADER_BEGIN
 
 GPGP_CONST float kArcHandle = 0.26521648f; // of an eighth of a circle: 4/3 tan(1/16 of a turn)
 GPGP_CONST float kArcMiddle = 0.70710678f;
 
-GPGP_FN uint contourSegments(ShapeRecord s) { return (s.kind & kShapeRound) != 0u ? 12u : 4u; }
+GPGP_FN uint contourSegments(ShapeRecord s) { return isTriangle(s) ? 3u : ((s.kind & kShapeRound) != 0u ? 12u : 4u); }
 GPGP_FN uint shapeSegments(ShapeRecord s) { return contourSegments(s) * (s.border > 0.0f ? 2u : 1u); }
 
 // A point of the shape's frame.
@@ -49,6 +49,7 @@ GPGP_FN ShapeCorner shapeCorner(ShapeRecord s, bool inner, uint q) {
 
 // Segment k of a shape; its path is 0. Outlines run with the region on their left, the inner one against that.
 GPGP_FN SegmentRecord shapeSegment(ShapeRecord s, uint k) {
+  if (isTriangle(s)) return triangleSegment(s, k);
   const uint whole = contourSegments(s);
   const bool inner = k >= whole;
   const uint at = inner ? k - whole : k;

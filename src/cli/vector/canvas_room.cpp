@@ -50,7 +50,10 @@ std::optional<Canvas> largerCanvas(Session& session, GpgpCanvasCreateInfo& info,
       if (report.layerPixels != UINT32_MAX) // which no budget holds
         next.maxLayerPixels = std::max(info.maxLayerPixels, std::min(report.layerPixels, 1u << 28));
       next.maxLayerOperations = std::max(info.maxLayerOperations, std::min(report.layerOperations, 65536u));
-      const bool layers = next.maxTilePatches > report.tilePatchesGiven || next.maxDrawings > report.itemsGiven ||
+      if (report.imagePixels > report.imagePixelsGiven)
+        next.maxImagePixels = std::min(report.imagePixels, 1u << 28);
+      const bool layers = next.maxImagePixels != info.maxImagePixels ||
+                          next.maxTilePatches > report.tilePatchesGiven || next.maxDrawings > report.itemsGiven ||
                           next.maxLayerPixels > report.layerPixelsGiven ||
                           next.maxLayerOperations > report.layerOperationsGiven;
       if (!layers && next.maxTileEntries == report.tileEntriesGiven && next.maxTileWords == report.tileWordsGiven)
@@ -70,6 +73,11 @@ std::string omitted(const GpgpCanvasReport& report, uint32_t paths, bool said) {
     return "the drawing's layers were left out: they need " + std::to_string(report.layerPixels) + " pixels and " +
            std::to_string(report.layerOperations) + " operations, and there is room for " +
            std::to_string(report.layerPixelsGiven) + " and " + std::to_string(report.layerOperationsGiven) +
+           "; a smaller --size needs fewer";
+  if (report.imagePixels > report.imagePixelsGiven)
+    return std::to_string(report.pathsDropped) + " of " + std::to_string(paths) +
+           " paths were left out: images cover " + std::to_string(report.imagePixels) +
+           " pixels, and there is room for " + std::to_string(report.imagePixelsGiven) +
            "; a smaller --size needs fewer";
   const bool words = report.tileWords > report.tileWordsGiven;
   const std::string text =

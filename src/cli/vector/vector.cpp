@@ -249,6 +249,7 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   canvasInfo.maxTileEntries = options.maxTileEntries;
   canvasInfo.targets = GPGP_CANVAS_TARGET_RGBA8;
   canvasInfo.method = patches ? GPGP_CANVAS_PATCHES : GPGP_CANVAS_FLATTENED;
+  canvasInfo.maxImages = static_cast<uint32_t>(images.pictures().size());
   const auto table = gpgp::vector::loadBaked({static_cast<const std::byte*>(blob->data()), blob->size()},
                                              std::pmr::get_default_resource());
   if (!table) throw Failure(table.error().text);

@@ -53,7 +53,7 @@ struct Compositor {
     for (const PlacedPath& path : places.paths) {
       groups.push_back(groupsOf(path));
       see(path.color);
-      if (path.paint == 0) continue;
+      if (path.paint == 0 || path.paint & shader::kPaintsTriangle) continue;
       const uint32_t slot = places.items[path.item].slot;
       const uint32_t first = input.word(slot, path.paint - 1 + 3, 0), count = input.word(slot, path.paint - 1 + 3, 1);
       if (input.word(slot, path.paint - 1 + 2, 1) >= shader::kPaintImage) continue;
@@ -151,6 +151,8 @@ struct Compositor {
   void paint(Pixel& pixel, size_t index, uint32_t x, uint32_t y) const {
     const PlacedPath& path = places.paths[index];
     CpuCoverage coverage = places.at(input.header, index, x, y);
+    if (path.paint & shader::kPaintsTriangle) coverage.difference = 0;
+    const uint32_t own = coverage.mask;
     if (!coverage.mask && !coverage.difference) return;
     toGroups(pixel, groups[index]);
     Light& light = pixel.light;
@@ -160,7 +162,7 @@ struct Compositor {
     if (path.group) clip(path, x, y, area, coverage);
     const auto [mask, difference] = coverage;
     if (mask == 0 && (pixel.first ? difference == 0 : light.gap * static_cast<float>(difference) <= 0)) return;
-    const CpuColor source = paintAt(input, places, path, x, y);
+    const CpuColor source = paintAt(input, places, path, x, y, own);
     const float alpha = source.color.w;
     float weight = 0, doubtful = 0; // light that an alpha in doubt may let through or not
     if (pixel.first && (mask != every || difference != 0)) {

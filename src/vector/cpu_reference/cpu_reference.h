@@ -66,6 +66,8 @@ struct CpuPlaces {
   }
 };
 CpuPlaces placeOnCpu(const CpuInput& input);
+/// Of an item that is one.
+shader::ShapeRecord shapeOf(const CpuInput& input, const shader::ItemRecord& item);
 
 /// A tile's list of paths, front to back, up to the first that hides the rest, and which shader takes it.
 struct CpuList {
@@ -87,9 +89,10 @@ std::vector<std::vector<uint32_t>> binOnCpu(const CpuInput& input, const CpuPlac
 struct CpuColor {
   shader::vec4 color{}, doubt{};
 };
-/// What paints at a point of the canvas, premultiplied: a path's colour, times its gradient's or image's.
-CpuColor paintAt(const CpuInput& input, const CpuPlaces& places, const shader::PlacedPath& path, uint32_t x,
-                 uint32_t y);
+/// What paints in a pixel, premultiplied: a path's colour, times its gradient's or image's, or a triangle's. `mask`: the
+/// samples that the path covers.
+CpuColor paintAt(const CpuInput& input, const CpuPlaces& places, const shader::PlacedPath& path, uint32_t x, uint32_t y,
+                 uint32_t mask);
 /// The whole picture, as the target receives it: before it is rounded to the format.
 std::vector<CpuColor> paintOnCpu(const CpuInput& input, const CpuPlaces& places);
 

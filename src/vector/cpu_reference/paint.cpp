@@ -7,6 +7,7 @@
 #include "vector/raster/paint.h"
 #include "vector/cpu_reference/cpu_reference.h"
 #include "vector/shared/color.h"
+#include "vector/shared/triangle.h"
 
 #include <algorithm>
 
@@ -198,28 +199,56 @@ void drawingPoint(const CpuInput& input, const shader::PlacementRecord& placemen
   }
 }
 
+/// How far a triangle's weights may be off at a point that is known to `reach`.
+vec3 weightDoubt(const shader::ShapeRecord& s, const shader::TriangleWeights& w, vec2 at, vec2 reach) {
+  const vec2 size = glm::abs(at) + glm::abs(shader::triangleCorner(s, 0)) + glm::abs(shader::triangleCorner(s, 1)) +
+                    glm::abs(shader::triangleCorner(s, 2));
+  const vec2 place = reach + kSteps * kUnit * size;
+  return glm::abs(w.across) * place.x + glm::abs(w.down) * place.y;
+}
+
 } // namespace
 
-CpuColor paintAt(const CpuInput& input, const CpuPlaces& places, const shader::PlacedPath& path, uint32_t x,
-                 uint32_t y) {
+CpuColor paintAt(const CpuInput& input, const CpuPlaces& places, const shader::PlacedPath& path, uint32_t x, uint32_t y,
+                 uint32_t mask) {
   const bool encoded = input.header.flags & shader::kBlendSrgb;
   // What is in no gradient was encoded by the device.
   CpuColor color{path.color, vec4(vec3(path.color) * (encoded ? kPower : 0), 0)};
   if (path.paint == 0) return color;
   const ItemRecord& item = places.items[path.item];
+  const bool triangle = path.paint & shader::kPaintsTriangle;
+  const vec2 middle = vec2(x, y) + (triangle ? shader::middleOf(mask, input.header.samples) : vec2(0.5f));
   vec2 at, reach;
-  drawingPoint(input, input.placements[path.item], item, vec2(x, y) + 0.5f, at, reach);
-  const Paint paint(input, item.slot, path.paint - 1);
+  drawingPoint(input, input.placements[path.item], item, middle, at, reach);
+  // (c + d)(p + q) - c p, of which all are positive.
+  const auto paintBy = [&color](const CpuColor& painted) {
+    color = {color.color * painted.color,
+             color.color * painted.doubt + color.doubt * (painted.color + painted.doubt)};
+  };
+  const uint32_t record = path.paint & ~shader::kPaintsTriangle;
+  if (triangle) {
+    const shader::ShapeRecord shape = shapeOf(input, item);
+    const auto weights = shader::triangleWeights(shape, at);
+    const vec3 doubt = weightDoubt(shape, weights, at, reach);
+    const vec4 own = shader::triangleColor(shape, weights.at);
+    // No channel is above 1, and straight colours are multiplied by another one.
+    paintBy({own, vec4(2 * (doubt.x + doubt.y + doubt.z) + kSteps * kUnit)});
+    if (!record) return color;
+    const Paint paint(input, item.slot, record - 1);
+    const vec4 m = paint.record.matrix, o = paint.record.origin;
+    paintBy(paint.image(item, shader::triangleTexture(m, o, weights.at),
+                        shader::triangleTexture(glm::abs(m), glm::abs(o), doubt + kSteps * kUnit * weights.at)));
+    return color;
+  }
+  const Paint paint(input, item.slot, record - 1);
   const vec4 m = glm::abs(paint.record.matrix), o = glm::abs(paint.record.origin);
   const vec2 p = shader::paintPoint(paint.record.matrix, paint.record.origin, at);
   const float circles = paint.record.kind == shader::kPaintRadial ? std::abs(paint.record.startRadius) + o.z + o.w : 0;
   const vec2 size = glm::abs(at);
   const vec2 own(m.x * reach.x + m.z * reach.y + kSteps * kUnit * (m.x * size.x + m.z * size.y + o.x + circles),
                  m.y * reach.x + m.w * reach.y + kSteps * kUnit * (m.y * size.x + m.w * size.y + o.y + circles));
-  const CpuColor painted =
-      paint.record.kind >= shader::kPaintImage ? paint.image(item, p, own) : paint.gradient(p, own);
-  // (c + d)(p + q) - c p, of which all are positive.
-  return {color.color * painted.color, color.color * painted.doubt + color.doubt * (painted.color + painted.doubt)};
+  paintBy(paint.record.kind >= shader::kPaintImage ? paint.image(item, p, own) : paint.gradient(p, own));
+  return color;
 }
 
 } // namespace gpgp::vector

@@ -19,13 +19,13 @@ using shader::TileWord;
 using shader::vec3;
 using shader::vec4;
 
-namespace {
-
 ShapeRecord shapeOf(const CpuInput& input, const ItemRecord& item) {
   const auto at = [&](uint32_t i) { return input.fetch(kShapeSlot, item.paths + i); };
   const vec4 rest = at(3);
   return {at(0), at(1), at(2), rest.x, rest.y, shader::floatBitsToUint(rest.z), shader::floatBitsToUint(rest.w)};
 }
+
+namespace {
 
 /// Segment i of an item.
 SegmentRecord segmentOf(const CpuInput& input, const ItemRecord& item, uint32_t i) {
@@ -46,10 +46,12 @@ PlacedPath placePath(const CpuInput& input, const ItemRecord& item, uint32_t ite
   const bool shaped = item.slot == kShapeSlot;
   vec4 box, frame(0, 0, 1, 0), color;
   uint32_t paint = 0, clip = 0, layer = 0;
+  bool triangle = false;
   if (shaped) {
     const ShapeRecord shape = shapeOf(input, item);
-    box = shape.box;
-    frame = shape.frame;
+    triangle = shader::isTriangle(shape);
+    box = triangle ? shader::triangleBox(shape) : shape.box;
+    if (!triangle) frame = shape.frame;
     color = vec4(vec3(item.color), 1);
     paint = shape.paint;
   } else {
@@ -65,6 +67,7 @@ PlacedPath placePath(const CpuInput& input, const ItemRecord& item, uint32_t ite
   PlacedPath p{where.x, where.y, where.z, where.w, 0, itemIndex, 0, 0, {}};
   const float alpha = color.w * item.color.w;
   p.paint = paint ? input.slots(item.slot).paints + (paint - 1) * 4 + 1 : 0;
+  if (triangle) p.paint |= shader::kPaintsTriangle;
   p.group = (clip | layer ? path + 2 + 1 : 0) | (item.clip | item.layer ? kItemGrouped : 0);
   p.color = p.paint && !shaped ? vec4(alpha) : shader::blended(vec3(color), alpha, input.header.flags);
   return p;

@@ -43,9 +43,10 @@ PassBuilder::PassBuilder(const CanvasSizes& canvas, const core::Device& device, 
   entries = list.add({"entries", scratch, VkDeviceSize(sizes.maxEntries) * shader::kEntryWords * 4});
   counters = list.add({"counters", scratch, sizeof(CanvasCounters)});
   items = list.add({"items", scratch, heads + shader::kFirstItems * 4 + placed * sizeof(ItemRecord)});
-  static constexpr const char* kImageNames[shader::kMaxImages] = {"images[0]", "images[1]", "images[2]", "images[3]",
+  static constexpr const char* kImageNames[shader::kPageImages] = {"images[0]", "images[1]", "images[2]", "images[3]",
                                                                   "images[4]", "images[5]", "images[6]", "images[7]"};
-  for (uint32_t i = 0; i < shader::kMaxImages; ++i) {
+  list.texturePages = sizes.imagePages;
+  for (uint32_t i = 0; i < shader::kPageImages; ++i) {
     const auto added = list.add({kImageNames[i], texture, 0, true});
     if (i == 0) images = added;
   }
@@ -62,6 +63,9 @@ PassBuilder::PassBuilder(const CanvasSizes& canvas, const core::Device& device, 
   operations =
       list.add({"operations", buffer, VkDeviceSize(sizes.layers.operations) * sizeof(shader::OperationRecord), true});
   layeredHistory = list.add({"layered history", buffer, 0, true});
+  imageColors =
+      list.add({"image colors", scratch, std::max<VkDeviceSize>(sizes.imageTiles * VkDeviceSize(16 + 64 * 8), 16)});
+  assert(imageColors == shader::kBindImageColors);
   if (sizes.maxTilePatches) {
     constexpr VkDeviceSize kRecord = sizeof(shader::PatchPlaceRecord);
     patchBlocks = list.add({"patch blocks", scratch, shader::kPatchBlocks * kRecord});
@@ -156,7 +160,8 @@ void PassBuilder::target(core::Pass& pass, uint32_t target, uint32_t condition) 
 }
 
 void PassBuilder::useImages(core::Pass& pass) const {
-  for (uint32_t i = 0; i < shader::kMaxImages; ++i) pass.uses[pass.useCount++] = {images + i, read};
+  for (uint32_t i = 0; i < shader::kPageImages; ++i) pass.uses[pass.useCount++] = {images + i, read};
+  if (!pass.paged) pass.uses[pass.useCount++] = {imageColors, read};
 }
 
 } // namespace gpgp::vector

@@ -42,7 +42,7 @@ public:
   core::ResourceIndex history = 0, image8 = 0, image16 = 0;
   core::ResourceIndex fromHost = 0, paths = 0, words = 0, bins = 0, entries = 0, counters = 0, items = 0, images = 0,
                       segments = 0, rows = 0, shapes = 0, aside = 0, pictures = 0, operations = 0, layeredHistory = 0,
-                      patchBlocks = 0, tilePatches = 0;
+                      imageColors = 0, patchBlocks = 0, tilePatches = 0;
 };
 
 // Stages, in the order in which they are recorded.
@@ -51,6 +51,7 @@ void addPlace(PassBuilder& builder);          ///< place, small glyphs
 void addMark(PassBuilder& builder);           ///< mark, pack
 void addPatchTiles(PassBuilder& builder);     ///< patch tiles, patch blocks
 void addPatchFill(PassBuilder& builder);      ///< patch fill
+void addImages(PassBuilder& builder);         ///< colours of images, where these come in pages
 void addFill(PassBuilder& builder);           ///< allocate, split, fill
 void addRaster(PassBuilder& builder);         ///< raster
 void addSoftwareFill(PassBuilder& builder);   ///< addFill's on software devices

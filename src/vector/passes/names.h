@@ -21,7 +21,8 @@ enum Groups : uint32_t {
   kFill,
   kPresents,
   kPatches,
-  kPatchBlocks
+  kPatchBlocks,
+  kImageTiles
 };
 constexpr uint32_t kNoImage = 0, kHasImage8 = 1, kHasImage16 = 2; // added to those that are multiples of three
 enum Conditions : uint32_t {
@@ -56,7 +57,8 @@ enum Conditions : uint32_t {
   kSiftPlain,
   kPatchesOne, // patches, of one drawing
   kPatchesDrawings,
-  kPresent = 49 // by target
+  kImagePages,  // of images, more than one
+  kPresent = 50 // by target
 };
 static_assert(kPresent + 2 < core::kMaxConditions);
 

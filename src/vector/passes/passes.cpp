@@ -10,11 +10,13 @@ core::PassList describePasses(const CanvasSizes& sizes, const core::Device& devi
   addMark(builder);
   if (sizes.software) {
     addSoftwareFill(builder);
+    addImages(builder);
     addSoftwareRaster(builder);
   } else {
     if (sizes.maxTilePatches) addPatchTiles(builder);
     addFill(builder);
     if (sizes.maxTilePatches) addPatchFill(builder);
+    addImages(builder);
     addRaster(builder);
   }
   if (sizes.layers.pixels) addLayers(builder);

@@ -39,8 +39,12 @@ void addBegin(PassBuilder& b) {
 
 void addPlace(PassBuilder& b) {
   b.forms({"place", "place, several drawings", "place, projective"}, vector_place,
-          {{b.paths, readWrite}, {b.words, readWrite}, {b.bins, readWrite}, {b.counters, readWrite}}, kPaths,
-          kOneDrawing);
+          {{b.paths, readWrite},
+           {b.words, readWrite},
+           {b.bins, readWrite},
+           {b.counters, readWrite},
+           {b.imageColors, write}},
+          kPaths, kOneDrawing);
   if (b.sizes.software) return b.clear("clear words", vector_clear_words, b.words);
   const auto glyphs = [&](const char* name, Spirv spirv, uint32_t condition) -> core::Pass& {
     return b.dispatch(name, spirv, {{b.paths, read}, {b.words, write}, {b.counters, readWrite}, {b.entries, write}},

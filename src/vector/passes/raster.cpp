@@ -4,6 +4,19 @@
 namespace gpgp::vector {
 using enum core::UseKind;
 
+void addImages(PassBuilder& b) {
+  if (b.sizes.imagePages < 2) return;
+  core::Pass& pass = b.dispatch("images", b.sizes.software ? vector_images_software : vector_images,
+                                {{b.paths, read},
+                                 {b.words, read},
+                                 {b.entries, read},
+                                 {b.counters, read},
+                                 {b.imageColors, readWrite}},
+                                kImageTiles, kImagePages);
+  pass.paged = true;
+  b.useImages(pass);
+}
+
 void addRaster(PassBuilder& b) {
   // The general shader's tiles are painted beside the others, and first, as there are few and each takes long. They
   // are put aside, as two passes that write one image must not run beside each other.

@@ -60,7 +60,7 @@ core::Result<void> checkContents(const Drawing& d, std::pmr::memory_resource* me
   for (size_t i = 0; i < d.paints.size(); ++i) {
     const PaintRecord& p = d.paints[i];
     const bool image = p.kind == shader::kPaintImage;
-    if (image && (p.firstStop >= shader::kMaxImages || p.stopCount || p.spread || p.flags))
+    if (image && (p.firstStop >= GPGP_MAX_IMAGES || p.stopCount || p.spread || p.flags))
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu is not an image", i);
     if (!image && (!p.stopCount || p.firstStop > d.stops.size() || p.stopCount > d.stops.size() - p.firstStop))
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu refers to what is not there", i);

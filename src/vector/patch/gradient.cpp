@@ -98,9 +98,9 @@ core::Result<uint32_t> addGradient(const GpgpGradient& g, Drawing& drawing) {
 }
 
 core::Result<uint32_t> addImage(const GpgpImagePaint& image, Drawing& drawing) {
-  if (image.image >= shader::kMaxImages)
+  if (image.image >= GPGP_MAX_IMAGES)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "image.image is %u; it must be below %u", image.image,
-                     shader::kMaxImages);
+                     GPGP_MAX_IMAGES);
   double t[6];
   for (int k = 0; k < 6; ++k) {
     t[k] = static_cast<double>(image.transform[k]);

@@ -36,8 +36,11 @@ uint32_t heldBy(const GpgpCanvasImage& image, bool blendSrgb) {
 
 CanvasSizes sizesOf(const GpgpCanvasCreateInfo& info, bool software) {
   const uint32_t entries = info.maxTileEntries ? info.maxTileEntries : 131072;
-  return {.maxWidth = info.maxWidth ? info.maxWidth : 2048,
-          .maxHeight = info.maxHeight ? info.maxHeight : 2048,
+  const uint32_t width = info.maxWidth ? info.maxWidth : 2048, height = info.maxHeight ? info.maxHeight : 2048,
+                 pages = std::max(divide(info.maxImages, shader::kPageImages), 1u);
+  const uint64_t pixels = info.maxImagePixels ? info.maxImagePixels : uint64_t(width) * height;
+  return {.maxWidth = width,
+          .maxHeight = height,
           .maxEntries = entries,
           .maxWords = info.maxTileWords ? info.maxTileWords : std::max(entries, 65536u),
           .targets = info.targets ? info.targets : ~GpgpCanvasTargets(0),
@@ -49,14 +52,18 @@ CanvasSizes sizesOf(const GpgpCanvasCreateInfo& info, bool software) {
                                                                     : 1024},
           .maxTilePatches = info.method == GPGP_CANVAS_FLATTENED ? 0
                             : info.maxTilePatches                ? info.maxTilePatches
-                                                                 : 2 * entries};
+                                                                 : 2 * entries,
+          .imagePages = pages,
+          .imageTiles = pages > 1 ? divide(pixels, shader::kTileSize * shader::kTileSize) : 0};
 }
 } // namespace
 
 Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
     : Recorder(owner, core::Kind::canvas, info.base, GPGP_SERVICE_VECTOR), sizes_(sizesOf(info, owner.device.software)),
       assets_(sizes_.items.items, &owner.host()), tables_(sizes_.items, &owner.host()),
-      layers_(sizes_.layers, sizes_.layers.pixels ? sizes_.items.items : 0, &owner.host()) {}
+      layers_(sizes_.layers, sizes_.layers.pixels ? sizes_.items.items : 0, &owner.host()),
+      images_(sizes_.imagePages > 1 ? sizes_.imagePages * shader::kPageImages : 0, &owner.host()),
+      imagesHold_(sizes_.imagePages, &owner.host()) {}
 
 Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCanvasCreateInfo& info) {
   auto canvas = core::makeUnique<Canvas>(context.host(), context, info);
@@ -102,9 +109,10 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* 
                      history && !sizes_.writes(kNoImage) ? "a history"
                      : target == kHasImage8              ? "R8G8B8A8_UNORM"
                                                          : "R16G16B16A16_SFLOAT");
-  if (info.imageCount > shader::kMaxImages)
-    return makeError(GPGP_ERROR_UNSUPPORTED, "imageCount is %u; a recording paints with at most %u (GPGP_MAX_IMAGES)",
-                     info.imageCount, shader::kMaxImages);
+  if (info.imageCount > sizes_.imagePages * shader::kPageImages)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                     "imageCount is %u; the canvas was made for %u (GpgpCanvasCreateInfo::maxImages)", info.imageCount,
+                     sizes_.imagePages * shader::kPageImages);
   if (info.imageCount && !info.images)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "images is NULL, but imageCount is %u", info.imageCount);
   for (uint32_t i = 0; i < info.imageCount; ++i) {
@@ -208,8 +216,14 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   const uint32_t perGroup = sizes_.software ? 64 : header.segmentCount < 16384 ? 4 : shader::kMostSegments;
   header.groupSegments = perGroup;
   header.listWords = sizes_.listWords();
+  // More images than a shader can name paint in pages, before the raster.
+  const uint32_t pages = images ? divide(info.imageCount, shader::kPageImages) : 0;
+  std::fill(imagesHold_.begin(), imagesHold_.end(), 0);
   for (uint32_t i = 0; i < info.imageCount && images; ++i)
-    header.images |= heldBy(info.images[i], info.blendSrgb) << i * shader::kImageBits;
+    imagesHold_[i / shader::kPageImages] |= heldBy(info.images[i], info.blendSrgb)
+                                            << i % shader::kPageImages * shader::kImageBits;
+  header.images = imagesHold_[0];
+  header.imageTiles = pages > 1 ? sizes_.imageTiles : 0;
   const shader::vec4 background{info.background[0], info.background[1], info.background[2], info.background[3]};
   if (!composites) header.background = background; // else what layers make lies on it
   const auto bytes = [](const auto& records, uint32_t count) { return std::as_bytes(std::span(records).first(count)); };
@@ -277,9 +291,18 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   if (rich) r.conditions[images ? kAsideImages : one ? kAsideOne : kAside] = true;
   if (rich || sizes_.software) r.conditions[!rich ? kSiftPlain : one ? kSplitOne : kSplit] = true;
   // Shaders name all images, so those that are not there are bound to the first one.
-  for (uint32_t i = 0; i < shader::kMaxImages && images; ++i) {
+  for (uint32_t i = 0; i < pages * shader::kPageImages; ++i) {
     const GpgpCanvasImage& from = info.images[i < info.imageCount ? i : 0];
-    r.bindings[shader::kBindImages + i].texture = {from.sampler, from.view, from.layout};
+    const VkDescriptorImageInfo image{from.sampler, from.view, from.layout};
+    if (pages > 1)
+      images_[i] = image;
+    else
+      r.bindings[shader::kBindImages + i].texture = image;
+  }
+  if (pages > 1) {
+    r.pages = std::span(images_).first(size_t(pages) * shader::kPageImages);
+    r.pageConstants = std::span(imagesHold_).first(pages);
+    r.conditions[kImagePages] = true;
   }
   r.groups[kPaths] = rows(divide(std::max(header.pathCount, 1u), 64)); // it also counts what was left out
   const uint64_t bins = uint64_t(header.binCount) * header.binWords;
@@ -296,6 +319,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   r.groups[kOnce] = {1, 1, 1};
   r.groups[kPatches] = rows(divide(patches.patches, std::max(patches.groupPatches, 1u)));
   r.groups[kPatchBlocks] = {512, 1, 1};
+  r.groups[kImageTiles] = {64, 64, 1};
   r.groups[kClear] = {64, 1, 1};
   r.groups[kFill] = {std::min(std::max(header.segmentCount / 160, divide(height, 64)), 4096u), 1, 1};
   r.groups[kSmallGlyphs] = rows(std::max(header.itemCount, 1u));
@@ -377,6 +401,9 @@ bool Canvas::takeCanvasReport(GpgpCanvasReport& report) {
   report.layerOperationsGiven = executed ? sizes_.layers.operations : 0;
   report.tilePatches = counters.tilePatches;
   report.tilePatchesGiven = executed ? sizes_.maxTilePatches : 0;
+  constexpr uint32_t kTilePixels = shader::kTileSize * shader::kTileSize;
+  report.imagePixels = static_cast<uint32_t>(std::min<uint64_t>(uint64_t(counters.imageTiles) * kTilePixels, UINT32_MAX));
+  report.imagePixelsGiven = executed ? sizes_.imageTiles * kTilePixels : 0;
   if (counters.pathsDropped) report.base.status = GPGP_BUDGET_EXCEEDED;
   if (counters.ended) report.base.status = GPGP_ERROR_UNSUPPORTED;
   return true;

@@ -40,6 +40,8 @@ private:
   std::pmr::vector<ItemAsset> assets_;
   ItemTables tables_;
   LayerTables layers_;
+  std::pmr::vector<VkDescriptorImageInfo> images_; ///< of pages, where there is more than one
+  std::pmr::vector<uint32_t> imagesHold_;          ///< by page, as CanvasHeader::images
   size_t operationCount_ = 0;                 ///< of the last recording
   std::array<uint32_t, 6> operationPasses_{}; ///< by OPERATIONS (operate.comp)
 };

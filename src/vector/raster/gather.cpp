@@ -285,6 +285,10 @@ bool Gather::addShape(const shader::ShapeRecord& shape, uint32_t source, const s
 void Gather::addShapes(const List& list, std::span<const List::Shape> from, uint32_t source) {
   for (const List::Shape& shape : from) {
     shader::ShapeRecord record = shape.record;
+    if (shader::isTriangle(record)) {
+      record = List::toRecord(record, info_.blendSrgb);
+      gradients = true;
+    }
     if (record.paint) {
       shader::PaintRecord paint = list.paints().paints[record.paint - 1];
       const uint32_t first = paint.kind == shader::kPaintSlices ? paint.slices : paint.firstStop;

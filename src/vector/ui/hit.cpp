@@ -1,5 +1,7 @@
 #include "vector/ui/hit.h"
 
+#include "vector/shared/triangle.h"
+
 #include <algorithm>
 #include <cstring>
 
@@ -123,7 +125,14 @@ bool inContour(const ShapeRecord& s, Point p, double inset) {
   return true;
 }
 
+bool inTriangle(const ShapeRecord& s, Point p) {
+  bool inside = false;
+  for (uint32_t k = 0; k < 3; ++k) inside ^= isLeft(shader::triangleSegment(s, k), p);
+  return inside;
+}
+
 bool inShape(const ShapeRecord& s, Point p) {
+  if (shader::isTriangle(s)) return inTriangle(s, p);
   const double dx = p.x - number(s.frame.x), dy = p.y - number(s.frame.y);
   const double ax = number(s.frame.z), ay = number(s.frame.w);
   const Point at{dx * ax + dy * ay, dy * ax - dx * ay};
@@ -164,6 +173,13 @@ Result<bool> hitList(const List& list, const Map& map, double x, double y, GpgpH
       found = true;
       hit.entry += static_cast<uint32_t>(k - 1);
       hit.id = shapes[k - 1].id;
+    } else if (command.kind == List::Kind::triangles) {
+      const auto triangles = list.shapes().subspan(command.first, command.count);
+      size_t k = triangles.size();
+      while (k > 0 && !inShape(triangles[k - 1].record, p)) --k;
+      if (!k) continue;
+      found = true;
+      hit.path = static_cast<uint32_t>(triangles[k - 1].id);
     } else {
       const core::Object* asset = command.asset();
       if (!asset)

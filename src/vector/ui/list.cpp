@@ -187,9 +187,9 @@ List::Command& List::addCommand(Kind what) {
 }
 
 Result<uint32_t> List::addImagePaint(const GpgpListImage& image, const vec4& box) {
-  if (image.image >= shader::kMaxImages)
+  if (image.image >= GPGP_MAX_IMAGES)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "image.image is %u; it must be below %u", image.image,
-                     shader::kMaxImages);
+                     GPGP_MAX_IMAGES);
   const float* s = image.source;
   if (!within(s, 4, -1e6f, 1e6f))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "image.source holds what is no number within 1e6");

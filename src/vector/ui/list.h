@@ -23,6 +23,7 @@ public:
   core::Result<void> pushGroup(float opacity);
   core::Result<void> pop();
   core::Result<void> addShapes(std::span<const GpgpListShape> shapes);
+  core::Result<void> addTriangles(const GpgpListTriangles& triangles);
   core::Result<void> addText(const core::Object& glyphSet, std::span<const GpgpGlyphInstance> glyphs, uint64_t id);
   void addDrawing(const core::Object& drawing, uint32_t firstImage, uint64_t id);
 
@@ -42,21 +43,23 @@ public:
     uint32_t parent, depth;
   };
   struct Shape {
-    shader::ShapeRecord record; ///< in the base's space; paint: of paints()
+    shader::ShapeRecord record; ///< in the base's space; paint: of paints(). Triangles: toRecord() completes it
     shader::vec4 color;
-    uint64_t id;
+    uint64_t id; ///< of a triangle: its index among those that were given
   };
-  enum class Kind : uint32_t { shapes, text, drawing };
+  /// A triangle's record with its colours as a canvas mixes them.
+  static shader::ShapeRecord toRecord(const shader::ShapeRecord& triangle, bool blendSrgb);
+  enum class Kind : uint32_t { shapes, triangles, text, drawing };
   struct Command {
     Kind kind;
-    uint32_t first = 0, count = 0; ///< of shapes() or glyphs()
+    uint32_t first = 0, count = 0; ///< of shapes() (triangles, too) or glyphs()
     uint32_t firstEntry = 0;       ///< as GpgpHit::entry counts
     Space space;
     float opacity = 1;       ///< of a drawing; the others have it in their colours
     uint32_t firstImage = 0; ///< of a drawing
     const core::Slot* slot = nullptr;
     uint32_t generation = 0;
-    uint64_t id = 0; ///< of a text or drawing
+    uint64_t id = 0; ///< of triangles, a text or a drawing
     /// The glyph set or drawing; null where it was destroyed.
     const core::Object* asset() const { return slot->generation == generation ? slot->object : nullptr; }
   };
