@@ -40,6 +40,7 @@ function link(text, target, file, anchor, at, name) {
   file = file == "" ? own : normal(folder "/" file)
   if (file !~ /\.md$/ || file !~ /^(docs|integrations)\//) return text
   name = pageName(file)
+  gsub(/`/, "", text) # which links to names show as they are
   if (anchor != "") return "[" text "](@ref " name "_" anchor ")"
   return file == "docs/README.md" ? "[" text "](index.html)" : "[" text "](@ref " name ")"
 }
@@ -62,14 +63,19 @@ function links(line, made, open, rest, middle, close_, text, target) {
   }
   return made line
 }
-function quotes(line, parts, count, i, made) { # Doxygen ends a code span at an apostrophe
+function spans(line, parts, count, i, made) { # Doxygen ends a code span at an apostrophe, and finds commands in it
   count = split(line, parts, "`")
-  if (count % 2 == 0) return line
+  if (count % 2 == 0) { # a span goes on in the next line
+    gsub(/@/, "\\@", line)
+    return line
+  }
+  for (i = 1; i <= count; i += 2) gsub(/@/, "\\@", parts[i])
   made = parts[1]
   for (i = 2; i <= count; i += 2) {
-    if (index(parts[i], "\047")) {
+    if (parts[i] ~ /[@\047]/) {
       gsub(/&/, "\\&amp;", parts[i])
       gsub(/</, "\\&lt;", parts[i])
+      gsub(/@/, "\\&#64;", parts[i])
       made = made "<code>" parts[i] "</code>" parts[i + 1]
     } else {
       made = made "`" parts[i] "`" parts[i + 1]
@@ -105,9 +111,8 @@ NR == 1 {
 /^ *```/ { fenced = !fenced; print; next }
 fenced { print; next }
 {
-  gsub(/@/, "\\@")
   gsub(/src="\.\.\/pictures\//, "src=\"pictures/")
-  $0 = quotes(links($0))
+  $0 = links(spans($0))
 }
 /^#+ / {
   depth = index($0, " ") - 1
