@@ -27,17 +27,18 @@ bool allocationFails() {
   return !uncounted && number >= failFrom && number <= failTo;
 }
 uint64_t allocationsTried() { return tried; }
-#ifdef __SANITIZE_ADDRESS__
-bool canFailNew() { return false; }
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define GPGP_TEST_OWN_NEW 0
 #else
-bool canFailNew() { return true; }
+#define GPGP_TEST_OWN_NEW 1
 #endif
+bool canFailNew() { return GPGP_TEST_OWN_NEW; }
 UncountedNew::UncountedNew() { ++uncounted; }
 UncountedNew::~UncountedNew() { --uncounted; }
 } // namespace gpgp::test
 
 // A sanitizer has its own operators and checks that they go together: there nothing is counted.
-#ifndef __SANITIZE_ADDRESS__
+#if GPGP_TEST_OWN_NEW
 namespace {
 void* allocate(std::size_t size, std::size_t alignment) {
   if (!uncounted) {
