@@ -138,7 +138,7 @@ inline std::string difference(const Derivation& cpu, const std::vector<GpgpInsta
   }
   for (const auto& [name, report] : cpu.reports) {
     const Report& other = reports[name];
-    const auto isSame = [&](double a, double b) { return std::fabs(a - b) <= reportError * std::fabs(a); };
+    const auto isSame = [&](double x, double y) { return std::fabs(x - y) <= reportError * std::fabs(x); };
     if (report.count != other.count || !isSame(report.least, other.least) || !isSame(report.most, other.most) ||
         std::fabs(report.sum - other.sum) > 1e-6 * (1 + std::fabs(report.sum)))
       return "report " + name + ": " + std::to_string(report.sum) + " (" + std::to_string(report.count) +

@@ -243,6 +243,49 @@ TEST(Operators, ThoseOfCornersKeepThem) {
   }
 }
 
+TEST(Operators, RoofsAndTheirFaces) {
+  // Ten by six, one to one: three high, with a ridge of four.
+  const auto hip = derived("A = Roof(2,1,1) T;", makeAxiom(10, 0, 6)).instances.at(0);
+  EXPECT_EQ(hip.shape & 0xff, GPGP_SHAPE_ROOF);
+  EXPECT_NEAR((hip.shape >> 8 & 0xfffff) / 1048576.0, 0.2, 1e-6);
+  EXPECT_EQ(hip.shape >> 28, 0u);
+  EXPECT_FLOAT_EQ(hip.size[1], 3);
+  EXPECT_FLOAT_EQ(hip.transform[7], 1.5f);
+  for (int face = 0; face < 5; ++face) {
+    const auto f = derived("A = Roof(2,1,1) RoofFace(" + std::to_string(face) + ",0,0) T;", makeAxiom(10, 0, 6))
+                       .instances.at(0);
+    EXPECT_EQ(f.shape & 0xff, face == 4 ? GPGP_SHAPE_QUAD : GPGP_SHAPE_TRAPEZOID);
+    EXPECT_FLOAT_EQ(f.size[0], face % 2 ? 6 : 10);
+    EXPECT_FLOAT_EQ(f.size[1], face == 4 ? 6 : 3 * std::sqrt(2.0f));
+    if (face == 4) continue;
+    // Its middle is a quarter in from the edge and half up; it looks out and up.
+    const float out[4][2] = {{0, 1}, {1, 0}, {0, -1}, {-1, 0}};
+    const float edge = face % 2 ? 5 : 3;
+    EXPECT_NEAR(f.transform[3], out[face][0] * (edge - 1.5f), 1e-5);
+    EXPECT_NEAR(f.transform[7], 1.5f, 1e-5);
+    EXPECT_NEAR(f.transform[11], out[face][1] * (edge - 1.5f), 1e-5);
+    EXPECT_NEAR(f.transform[2], out[face][0] * std::sqrt(0.5f), 1e-5);
+    EXPECT_NEAR(f.transform[6], std::sqrt(0.5f), 1e-5);
+    EXPECT_NEAR(f.transform[10], out[face][1] * std::sqrt(0.5f), 1e-5);
+  }
+  // A quad stands up; degrees; overhangs lengthen slopes, and gables' ridges at both ends.
+  const auto slope = derived("A = ToFace(0) Roof(0,2,45) RoofFace(0,1,0.5) T;", makeAxiom(10, 2, 6)).instances.at(0);
+  EXPECT_EQ(slope.shape, GPGP_SHAPE_QUAD);
+  EXPECT_NEAR(slope.size[0], 11, 1e-5);
+  EXPECT_NEAR(slope.size[1], 3 * std::sqrt(2.0f) + 1, 1e-5);
+  EXPECT_NEAR(slope.transform[7], 1 + 1.5f - 0.5f * std::sqrt(0.5f), 1e-5);
+  const auto wall = derived("A = Roof(0,0,3) RoofFace(1,1,0.5) T;", makeAxiom(10, 0, 6)).instances.at(0);
+  EXPECT_EQ(wall.shape, GPGP_SHAPE_TRAPEZOID);
+  EXPECT_FLOAT_EQ(wall.size[0], 6);
+  EXPECT_FLOAT_EQ(wall.size[1], 3);
+  EXPECT_FLOAT_EQ(wall.transform[3], 5);
+  // What is no rectangle, or no roof, stays as it is; nothing cuts a roof.
+  EXPECT_EQ(derived("A = RoofFace(1,0,0) T;", makeAxiom(1, 1, 1)).instances.at(0).shape, GPGP_SHAPE_BOX);
+  const auto cut = derived("A = Roof(3,0,1) SubDiv(X) { -1: T | -1: T };", makeAxiom(1, 0, 1));
+  EXPECT_TRUE(cut.instances.empty());
+  EXPECT_EQ(cut.droppedShapes, 1u);
+}
+
 TEST(Operators, ConditionsAndExpressions) {
   const auto taken = [](const std::string& condition) {
     const auto d = derived("A = If(" + condition + ") { T | U };", makeAxiom(2, 4, 6));

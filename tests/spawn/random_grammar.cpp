@@ -137,7 +137,7 @@ private:
   }
 
   std::string cornerOperator(int depth) {
-    switch (below(5)) {
+    switch (below(6)) {
     case 0:
       return std::string("ResizeCorner(") + value(0.5f, 3) + ",Max(" + value(0, 2) + ",ShapeSize(Y)),Min(" +
              value(1, 3) + ",2)) " + successor(depth - 1);
@@ -147,6 +147,11 @@ private:
       return std::string("TurnCorner(") + value(-90, 90) + "," + value(-180, 180) + ",90) " + successor(depth - 1);
     case 3:
       return std::string("SetAttribute(Noise(ShapeCustomAttribute(),") + value(0, 2) + ")) " + successor(depth - 1);
+    case 4:
+      return "Roof(" + std::to_string(below(8)) + "," + std::to_string(below(3)) + "," + value(0, 3) + ") " +
+             (below(2) ? successor(depth - 1)
+                       : "Replicate() { RoofFace(" + std::to_string(below(5)) + ",0.2,0.1) " + successor(depth - 1) +
+                             " | RoofFace(" + value(0, 3) + ",0," + number(0, 1) + ") " + successor(depth - 1) + " }");
     default: return std::string("ToFace(") + number(0, 6) + ") " + successor(depth - 1);
     }
   }

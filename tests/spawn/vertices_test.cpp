@@ -92,6 +92,11 @@ TEST(Mesh, SolidsAreClosedAndFaceOutwards) {
                                       kShapeDynamicConvexRightPrism | ((kRegularPolygons + 1) << 8),
                                       kShapeDynamicRightPrism | ((kRegularPolygons + 2) << 8),
                                       kShapeDynamicRightPrism | ((kRegularPolygons + 3) << 8)};
+  // Pyramids, hip roofs, gables, and shed roofs of all sides.
+  for (const uint32_t place : {0u, kRidgeLow, kRidgeHigh})
+    for (const uint32_t along : {0u, kRidgeAlongZ})
+      for (const uint32_t length : {0u, kRidgeFull / 4, kRidgeFull / 2, kRidgeFull})
+        if (place == 0 || length == kRidgeFull) geometries.push_back(kShapeRoof | ((place | along | length) << 8));
   for (uint32_t sides = 3; sides <= 8; ++sides)
     if (sides != 4) geometries.push_back((kShapePrism3 + sides - 3) | ((2 * (sides - 3)) << 8));
   for (const uint32_t geometry : geometries) {
@@ -114,6 +119,10 @@ TEST(Mesh, SolidsAreClosedAndFaceOutwards) {
     if (geometry == kShapeSphere) {
       EXPECT_GT(volume, 0.85 * 0.5235987756);
       EXPECT_LT(volume, 0.5235987756);
+    } else if ((geometry & 0xff) == kShapeRoof) {
+      // Under the ridge a prism, and both ends together a pyramid.
+      const double ridge = 2 * double(ridgeOf(geometry).halfLength);
+      EXPECT_NEAR(volume, ridge / 2 + (1 - ridge) / 3, 1e-6);
     } else {
       EXPECT_NEAR(volume, polygonArea(words, geometry), 1e-5);
     }

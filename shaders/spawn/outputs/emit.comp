@@ -40,7 +40,8 @@ void main() {
     }
     for (uint row = 0; row < 3; ++row)
       instances[place * 6 + row] = floatBitsToUint(instanceRow(s, uintBitsToFloat(axioms[axiom + row])));
-    instances[place * 6 + 3] = uvec4(bucket, shapeType(s) > kShapeSphere ? s.geometry : shapeType(s), axioms[axiom + 4].x, terminal[kNodeArgument]);
+    const uint shape = shapeType(s) > kShapeSphere ? s.geometry : shapeType(s); // as instanceShape()
+    instances[place * 6 + 3] = uvec4(bucket, shape, axioms[axiom + 4].x, terminal[kNodeArgument]);
     instances[place * 6 + 4] = uvec4(s.seed, floatBitsToUint(s.custom), s.key);
     instances[place * 6 + 5] = packPlane(s.size, terminal[kNodeRule]);
   }

@@ -436,11 +436,15 @@ void Deriver::writeTriangles(const Form& form, Derivation& result) {
 }
 
 LeafScope Deriver::scopeOf(const Shape& shape) const {
-  const bool isFlat = shape.form.mesh == boxes_.flat && boxes_.is(shape.form);
+  const bool isBox = boxes_.is(shape.form);
+  // Polygons in the ground plane are seen from above.
+  const bool isFlat = isBox ? shape.form.mesh == boxes_.flat : shape.form.mesh != 0 && shape.form.scope.size.y == 0;
   // What else lies in a plane, a roof's face for one, faces z as well.
-  const bool isQuad = isFlat || (boxes_.is(shape.form) ? shape.form.mesh == boxes_.upright
-                                                       : shape.form.mesh != 0 && shape.form.scope.size.z == 0);
-  const Scope s = isFlat ? boxes_.face(shape.form, 0).scope : shape.form.scope;
+  const bool isQuad = isFlat || (isBox ? shape.form.mesh == boxes_.upright
+                                       : shape.form.mesh != 0 && shape.form.scope.size.z == 0);
+  Form flat = shape.form;
+  flat.mesh = boxes_.flat;
+  const Scope s = isFlat ? boxes_.face(flat, 0).scope : shape.form.scope;
   LeafScope leaf;
   leaf.x = s.axisX * s.size.x;
   leaf.y = s.axisY * s.size.y;

@@ -154,7 +154,7 @@ std::string Lowering::keyOf(const Bound& bound) const {
 }
 
 std::string Lowering::keyOf(const State& state) const {
-  std::string key = std::to_string(static_cast<int>(state.form)) + (state.isMesh ? "m" : "");
+  std::string key = std::to_string(static_cast<int>(state.form)) + (state.isMesh ? state.isTilted ? "t" : "m" : "");
   if (const auto& roof = state.roof)
     key += " " + std::to_string(roof->form) + " " + text(roof->overhang) + " " + text(roof->overhangAtGables) + " " +
            text(roof->flattest) + " " + text(roof->steepest) + '\n';
@@ -320,6 +320,7 @@ Lowering::Text Lowering::item(const Statement& s, const Scope& scope, State stat
   }
   case Operation::split_: return split(s, scope, state);
   case Operation::comp_: return components(s, scope, state);
+  case Operation::setback_: return setback(s, scope, state);
   default: misfit("the operation '" + s.name + "'", s.place);
   }
 }

@@ -57,6 +57,7 @@ private:
     std::map<std::string, Bound> locals;  ///< of the rule, its parameters too
     bool made = false;
     bool isMesh = false;      ///< to the CPU, which counts its faces otherwise than those of boxes
+    bool isTilted = false;    ///< a mesh that was extruded from an upright rectangle
     std::optional<Roof> roof; ///< of Form::roof
     std::array<FormulaPtr, 3> moved{number(0), number(0), number(0)}; ///< from the centre where the rule began
   };
@@ -129,6 +130,8 @@ private:
   Text roofFaces(const Statement& s, const Scope& scope, const State& state);
   State roofFaceOf(const State& state, uint32_t side) const;
   bool selectsOfRoof(const cga::Part& part, const Scope& scope, const State& state, uint32_t side, uint32_t index);
+
+  Text setback(const Statement& s, const Scope& scope, const State& state);
 
   // lower_expressions.cpp
   Value value(const Expression& e, const Scope& scope, const State& state);

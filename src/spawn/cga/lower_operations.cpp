@@ -185,6 +185,7 @@ Lowering::Text Lowering::operation(const Statement& s, Operation operation, cons
       result_.needsUpright = true;
     }
     if (state.extents[axis] != Extent::zero) misfit("extrude of a rectangle whose scope has a height", s.place);
+    state.isTilted = state.isMesh && state.form == Form::upright;
     state.form = Form::box;
     state.extents[axis] = Extent::positive;
     changeSize(state, axis, kOtherSize);
@@ -505,11 +506,15 @@ Lowering::Text Lowering::components(const Statement& s, const Scope& scope, cons
   for (const cga::Part& part : s.parts)
     if (part.isOneShape || !part.selector) misfit("comp with =, of several faces as one shape,", part.place);
   if (state.roof) return roofFaces(s, scope, state);
-  if (state.form == Form::trapezoid || (state.isMesh && state.form == Form::box))
+  if (state.form == Form::trapezoid || (state.isTilted && state.form == Form::box))
     misfit("comp of a roof's face that is no rectangle, or was extruded,", s.place);
   const bool isBox = state.form == Form::box;
   constexpr uint32_t kFaces[6] = {1, 3, 5, 2, 4, 0}; // by CGA's index
+  const bool isMesh = isBox && state.isMesh; // children by parts then, as the CPU counts them
+  if (isMesh && state.axes[1] != 2) misfit("comp of a shape that may not be upright", s.place);
+  if (isMesh) result_.needsUpright = true;
   std::vector<Text> ways(6, nothing());
+  std::vector<std::pair<size_t, uint32_t>> order; // of faces: their parts
   for (uint32_t index = 0; index < (isBox ? 6u : 1u); ++index) {
     const uint32_t face = isBox ? kFaces[index] : 0;
     for (const cga::Part& part : s.parts) {
@@ -519,10 +524,18 @@ Lowering::Text Lowering::components(const Statement& s, const Scope& scope, cons
       child.moved = {number(0), number(0), number(0)};
       Scope inner = scope;
       ways[face] = limited(bodyOf(part.body, inner, std::move(child)));
+      order.emplace_back(&part - s.parts.data(), face);
       break;
     }
   }
   if (state.form == Form::upright) return joined("Replicate()", {ways[0]}); // the rectangle itself
+  if (isMesh) {
+    std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<Text> children;
+    for (const auto& [part, face] : order)
+      children.push_back(wrapped("ToFace(" + std::to_string(face) + ")", std::move(ways[face])));
+    return joined("Replicate()", std::move(children));
+  }
   const bool areSidesAlike =
       std::all_of(ways.begin() + 2, ways.end(), [&](const Text& way) { return way.text == ways[2].text; });
   if (areSidesAlike) return joined("CompSplit()", {ways[0], ways[1], ways[2]});

@@ -224,4 +224,100 @@ Lowering::Text Lowering::roofFaces(const Statement& s, const Scope& scope, const
   return joined("Replicate()", std::move(ways));
 }
 
+// ---------------------------------------------------------------- setbacks
+
+/// Of rectangles: what remains, and of edges beside which none moves what was cut off. Mitred pieces have to be NIL.
+Lowering::Text Lowering::setback(const Statement& s, const Scope& scope, const State& state) {
+  if (state.form != Form::flat && state.form != Form::upright)
+    misfit("'" + s.name + "' of anything but a rectangle", s.place);
+  const uint32_t up = state.form == Form::flat ? 1 : 2, across = 3 - up; // of the rectangle's axes
+  if (state.extents[up] != Extent::zero) misfit("'" + s.name + "' of a rectangle whose scope has a height", s.place);
+  if (state.extents[0] != Extent::positive || state.extents[across] != Extent::positive)
+    misfit("'" + s.name + "' of a rectangle that may have no extent along an axis", s.place);
+  const Value value = argument(*s.arguments.at(0), scope, state);
+  if (value.kind != Value::Kind::number) misfit("a setback that is no plain number", s.place);
+  const FormulaPtr distance = value.formula;
+  if (distance->draws || !(distance->low > 0)) misfit("a setback that is random or may be 0 or less", s.place);
+  // Edges as the CPU counts them: at the highest z or the lowest y, then on.
+  const uint32_t faces[4] = {state.form == Form::flat ? 3u : 1u, 5, state.form == Form::flat ? 2u : 0u, 4};
+  State edges = state;
+  edges.form = Form::box; // whose faces look where the edges do
+  std::array<const cga::Part*, 4> owner{};
+  const cga::Part* rest = nullptr;
+  bool isAny = false;
+  for (const cga::Part& part : s.parts) {
+    if (part.isOneShape || !part.selector) misfit("setback with =, of several pieces as one shape,", part.place);
+    const std::string name = word(*part.selector);
+    if (name == "remainder") {
+      rest = rest ? rest : &part;
+      continue;
+    }
+    isAny = true;
+    for (uint32_t e = 0; e < 4; ++e) {
+      const bool isHere = name == "border" ? true : name == "inside" ? false
+                                                                     : selects(part, scope, edges, faces[e], e, 4);
+      if (!owner[e] && isHere) owner[e] = &part;
+    }
+  }
+  const auto moves = [&](uint32_t e) { return owner[e] || !isAny; };
+  const auto along = [&](uint32_t e) { return e % 2 ? 0u : across; }; // the axis along which it moves
+  const auto inset = [&](uint32_t e) { return moves(e) ? distance : number(0); };
+  const auto sum = [&](const FormulaPtr& a, const FormulaPtr& b) { return fits(combined(kCodeAdd, a, b), s.place); };
+  const auto less = [&](const FormulaPtr& a, const FormulaPtr& b) {
+    return fits(combined(kCodeSubtract, a, b), s.place);
+  };
+  // The edge at the low end of each axis.
+  const uint32_t low[2] = {3, state.form == Form::flat ? 2u : 0u};
+  const FormulaPtr both[2] = {sum(inset(1), inset(3)), sum(inset(0), inset(2))};
+  const auto part = [&](const std::array<FormulaPtr, 3>& move, const std::array<FormulaPtr, 3>& size, const Body& body) {
+    State child = state;
+    child.made = false;
+    child.isMesh = true;
+    for (const uint32_t axis : {0u, across}) changeSize(child, axis, kOfRoof);
+    child.moved = {number(0), number(0), number(0)};
+    Scope inner = scope;
+    const auto values = [](const char* name, const std::array<FormulaPtr, 3>& v) {
+      return std::string(name) + "(" + cga::text(v[0]) + "," + cga::text(v[1]) + "," + cga::text(v[2]) + ")";
+    };
+    return wrapped(values("Translate", move), wrapped(values("ResizeCorner", size), limited(bodyOf(body, inner, child))));
+  };
+  const auto children = [&](bool remains) {
+    std::vector<Text> ways;
+    for (const cga::Part& p : s.parts) {
+      std::array<FormulaPtr, 3> move{number(0), number(0), number(0)}, size{sizeOf(0), sizeOf(1), sizeOf(2)};
+      if (&p == rest && remains) {
+        for (uint32_t i = 0; i < 2; ++i) {
+          const uint32_t axis = i ? across : 0;
+          move[axis] = inset(low[i]);
+          size[axis] = less(sizeOf(axis), both[i]);
+        }
+        ways.push_back(part(move, size, p.body));
+      }
+      for (uint32_t e = 0; e < 4; ++e) {
+        if (owner[e] != &p) continue;
+        if (moves((e + 1) % 4) || moves((e + 3) % 4)) {
+          ways.push_back(nothing());
+          Scope inner = scope;
+          if (!bodyOf(p.body, inner, state).isNothing()) misfit("a setback whose mitred pieces are used", p.place);
+          continue;
+        }
+        const uint32_t axis = along(e), i = axis ? 1 : 0;
+        const FormulaPtr room = moves((e + 2) % 4) ? fits(combined(kCodeMultiply, sizeOf(axis), number(0.5f)), s.place)
+                                                   : sizeOf(axis);
+        size[axis] = remains ? distance : room;
+        if (e != low[i]) move[axis] = less(sizeOf(axis), size[axis]);
+        ways.push_back(part(move, size, p.body));
+      }
+    }
+    return joined("Replicate()", std::move(ways));
+  };
+  FormulaPtr remains;
+  for (uint32_t i = 0; i < 2; ++i) {
+    if (both[i]->isNumber() && both[i]->value == 0) continue;
+    const FormulaPtr hasRoom = combined(kCodeLess, both[i], sizeOf(i ? across : 0));
+    remains = fits(remains ? combined(kCodeAnd, remains, hasRoom) : hasRoom, s.place);
+  }
+  return remains ? condition(remains, children(true), children(false)) : children(true);
+}
+
 } // namespace gpgp::spawn::cga

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <map>
 
@@ -404,6 +405,12 @@ private:
   }
   /// What the table says of an operator that passes on one shape.
   std::string callOf(const Node& node) {
+    // An angle that is known is a slope: as rotation() says.
+    const bool isAngle = node.op == kOpRoof && isConstant(node, 1) && isConstant(node, 2) &&
+                         std::floor(constant(node, 1)) >= static_cast<float>(kRoofByAngle);
+    if (isAngle)
+      return "roof(s, vec3(" + parameter(node, 0) + ", " + literal(static_cast<float>(kRoofBySlope)) + ", " +
+             literal(slopeOfDegrees(constant(node, 2))) + "))";
     return replaced(kOperators[node.op].call, [&](std::string_view word) {
       return word == "GPGP_VALUES"      ? vector(node)
              : word == "GPGP_VALUE"     ? parameter(node, 0)
