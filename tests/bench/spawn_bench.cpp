@@ -901,6 +901,54 @@ void bounds(Session& session, const std::vector<Case>& cases, const Options& opt
   }
 }
 
+// ---------------------------------------------------------------- rivals
+
+/// The scenes of samples/rivals, as instances: of the best named schedule of either kind of queues.
+void rivals(Session& session, const std::vector<Case>&, const Options& options, Kept& kept, Budget& budget) {
+  const std::string folder = GPGP_SAMPLE_GRAMMARS "/../rivals/";
+  std::printf(
+      "\n## Scenes that are derived every frame: instances of 96 bytes, the best of the named schedules\n\n"
+      "| scene | axioms | terminals | interpreter ms | one stack ms | queues ms | ns a terminal | scratch MiB | "
+      "instances MiB | grammar KiB | CPU / GPU |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const std::string name : {"market", "wood"}) {
+    if (!options.wants("rivals", name) || !budget.allows(0, name)) continue;
+    const BakedGraph grammar = bakeGraph({folder + name + ".pga"}, {});
+    const auto axioms = name == "wood" ? readAxioms(folder + "wood.csv", grammar.namedStarts(), {})
+                                       : axiomGrid(1, 0, {{120, 16, 120}, 1});
+    const Reference reference = evaluate(grammar, axioms);
+    DeriverOptions deriverOptions;
+    deriverOptions.expected = reference.result.terminals;
+    Deriver deriver(session, grammar, axioms, deriverOptions);
+    const Grammar interpreted = deriver.prepare(std::pmr::vector<uint32_t>());
+    const double interpreter = timeOf(deriver, interpreted, reference.result, name, options.repeat);
+    const double bytes = static_cast<double>(deriver.bytesWritten());
+    GpgpMemoryReport memory = GPGP_MEMORY_REPORT_INIT;
+    session.check(gpgpGetMemoryReport(session.context(), &memory), "gpgpGetMemoryReport");
+    Kernels kernels(grammar, session.device());
+    for (const char* schedule : spawn::kScheduleNames) {
+      kernels.add(*spawn::namedSchedule(grammar.graph, schedule));
+      kernels.add(withQueues(*spawn::namedSchedule(grammar.graph, schedule)));
+    }
+    Times times(session, kernels, {{static_cast<uint32_t>(axioms.size()), &deriver, &reference.result}}, name,
+                options.repeat, kept);
+    times.measureNew(budget);
+    std::array<double, 2> best;
+    best.fill(std::numeric_limits<double>::infinity());
+    for (size_t kernel = 0; kernel < kernels.size(); ++kernel) {
+      double& least = best[kernels.schedule(kernel).queues == spawn::Queues::groups];
+      least = std::fmin(least, times[kernel]);
+    }
+    const double least = std::min(best[0], best[1]);
+    constexpr double kMiB = 1 << 20;
+    std::printf("| %s | %zu | %llu | %s | %s | %s | %.2f | %.1f | %.1f | %.0f | %.1f |\n", name.c_str(), axioms.size(),
+                static_cast<unsigned long long>(reference.result.terminals), shown(interpreter).c_str(),
+                shown(best[0]).c_str(), shown(best[1]).c_str(),
+                least * 1e6 / static_cast<double>(reference.result.terminals),
+                static_cast<double>(memory.services[GPGP_SERVICE_SPAWN].deviceBytes) / kMiB, bytes / kMiB,
+                static_cast<double>(grammar.words.size()) / 256, reference.milliseconds / least);
+  }
+}
+
 // ---------------------------------------------------------------- curves
 
 void curves(Session& session, const std::vector<Case>& cases, const Options& options, Kept&, Budget& budget) {
@@ -986,6 +1034,7 @@ TABLE is one of
               record each. Rows: the cases' names
   queues      table 4.2's named schedules with one stack for all shapes of a workgroup, and with a queue for each
               execution group. Rows: the cases' names; --published FOLDER: also the grammars of the 2016 paper there
+  rivals      samples/rivals: scenes of the kind that GPU work graphs derive every frame. Rows: market wood
   heuristics  table 4.1, with one stack and with queues: pairs of schedules, a heuristic's edges as it says against
               inverted, all others random, with a paired t-test, at 1, 64, 128 and 256 axioms. Rows: H1 H2 H3. --pairs N (default 384, as published)
 ROW is a part of a row's name. --share F takes that part of each case's axioms; --quick is a short form of all.
@@ -1000,8 +1049,8 @@ int run(bench::Arguments arguments) {
   std::setvbuf(stdout, nullptr, _IOLBF, 1 << 16); // a run that is ended has printed every row that it had
   Options options;
   bool pairs = false, samples = false, repeat = false;
-  const std::vector<std::string> known = {"schedules", "vertices",   "partitions", "bounds",
-                                          "curves",    "heuristics", "searches",   "queues"};
+  const std::vector<std::string> known = {"schedules",  "vertices", "partitions", "bounds", "curves",
+                                          "heuristics", "searches", "queues",     "rivals"};
   while (arguments.next()) {
     const std::string& word = arguments.word();
     if (word == "--repeat")
@@ -1049,6 +1098,7 @@ int run(bench::Arguments arguments) {
                                     {"vertices", vertices},
                                     {"partitions", partitions},
                                     {"queues", queues},
+                                    {"rivals", rivals},
                                     {"bounds", bounds},
                                     {"curves", curves},
                                     {"heuristics", heuristics},

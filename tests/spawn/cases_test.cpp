@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -94,6 +95,59 @@ TEST(Cases, NothingIsDegenerate) { // where size weights or factors go wrong, bo
       ASSERT_GT(i.size[1], 0) << c.name << " terminal " << i.terminal;
       ASSERT_GE(i.size[2], i.shape == GPGP_SHAPE_BOX ? 1e-4f : 0.0f) << c.name << " terminal " << i.terminal;
     }
+  }
+}
+
+/// samples/rivals
+std::vector<uint32_t> rival(const std::string& name) {
+  const std::string text = host::readText(GPGP_SAMPLE_GRAMMARS "/../rivals/" + name + ".pga");
+  EXPECT_EQ(messagesOf(text), std::vector<std::string>{}) << name;
+  return bake(text);
+}
+/// A tree so far from the camera.
+GpgpAxiom treeAt(float metres, uint32_t seed) {
+  GpgpAxiom tree = spawn::makeAxiom(0.6f, 1.6f, 0.6f, seed, seed);
+  tree.attribute = metres;
+  return tree;
+}
+
+TEST(Rivals, HaveTheirSizesAndTheGpuDerivesTheSame) {
+  const auto market = rival("market"), wood = rival("wood");
+  const std::vector<GpgpAxiom> square{spawn::makeAxiom(120, 16, 120, 1, 0)};
+  const auto stalls = spawn::derive(market, square);
+  EXPECT_GT(stalls.terminals, 76000u);
+  EXPECT_LT(stalls.terminals, 84000u);
+  std::vector<GpgpAxiom> trees;
+  for (uint32_t seed = 1; seed <= 5; ++seed) trees.push_back(treeAt(20 * float(seed), seed));
+  SpawnDevice device;
+  for (const auto& [words, axioms] : {std::pair{market, square}, {wood, trees}}) {
+    const auto cpu = spawn::derive(words, axioms);
+    const GpgpSpawnReport gpu = device.derive(words, axioms, uint32_t(cpu.terminals));
+    EXPECT_EQ(gpu.base.status, GPGP_SUCCESS);
+    EXPECT_EQ(gpu.terminals, cpu.terminals);
+    EXPECT_EQ(gpu.keyHash[0], cpu.keyHash[0]);
+    EXPECT_EQ(gpu.keyHash[1], cpu.keyHash[1]);
+  }
+}
+
+TEST(Rivals, TreesHaveLessDetailFartherAway) {
+  const auto wood = rival("wood");
+  const auto limbs = [&](float metres, uint32_t seed) { // by place: bark is not moved by what is left out
+    std::set<std::array<float, 3>> places;
+    for (const GpgpInstance& i : spawn::derive(wood, std::vector{treeAt(metres, seed)}).instances)
+      if (i.terminal == 0) places.insert({i.transform[3], i.transform[7], i.transform[11]});
+    return places;
+  };
+  for (uint32_t seed = 1; seed <= 20; ++seed) {
+    size_t before = SIZE_MAX;
+    for (const float metres : {5.0f, 45.0f, 100.0f, 400.0f}) {
+      const size_t count = spawn::derive(wood, std::vector{treeAt(metres, seed)}).terminals;
+      EXPECT_LT(count, before) << metres << " m, seed " << seed;
+      before = count;
+    }
+    EXPECT_LT(before, 40u); // a trunk and its crown
+    const auto near = limbs(5, seed), far = limbs(400, seed);
+    EXPECT_TRUE(std::includes(near.begin(), near.end(), far.begin(), far.end())) << "seed " << seed;
   }
 }
 

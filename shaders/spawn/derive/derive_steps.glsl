@@ -5,6 +5,7 @@
 // waits in its turn: on the stack, or, in the batch's last step, where it is, as a part of the next batch. Terminals
 // leave at once, a workgroup's together. Where more shapes wait on the stack, a batch ends with a full step: parents
 // whose children are too many for that go back to the stack, one perhaps with a part of them made.
+const uint kPlenty = 16; // shapes of a round for each workgroup: then some may idle so that batches of others are full
 shared uint childrenUpTo[groupSize]; // of the batch's parents: inclusive sums
 shared uint hashX;
 shared uint hashY;
@@ -125,6 +126,8 @@ void main() {
   uint first = 0;
   uint batches = 0;
   bool drained = false; // nothing is left to fetch
+  const uint fair = count / gl_NumWorkGroups.x;
+  uint fetchedShapes = 0;
   const uint mostTurns = mostTurnsOf(count);
   for (uint turns = 0; turns < mostTurns || made < total;) {
     if (made >= total) { // the next batch: what waits in its place, more from the stack, or else from the queue
@@ -141,14 +144,15 @@ void main() {
       }
       if (waiting + stackSize == 0 && keptCount > 0) takeBack();
 #ifdef GPGP_QUEUES
-      // Its shapes are of one queue. While none fills a batch, more shapes come into the workgroup, but never so many
-      // that they would leave again.
+      // Its shapes are of one queue. While none fills a batch, more come into the workgroup: at most its share, unless
+      // there are plenty, and never so many that they would leave again.
       uint more = 0;
       if (waiting + stackSize > 0) {
         if (turnsCount) turns += gatherTurns(stackShapes, groupSize);
         if (waiting + stackSize > stackRoom) giveAway();
         const uint queue = fullestQueue(waits, s.node);
-        const bool fetches = !drained && queued[queue] < groupSize &&
+        const bool mayFetch = !drained && (fair >= kPlenty || fetchedShapes + share <= fair);
+        const bool fetches = mayFetch && queued[queue] < groupSize &&
                              waiting + stackSize + share < min(enough, stackRoom / 2);
         more = gather(queue, fetches, waits, waiting, s);
       }
@@ -176,6 +180,7 @@ void main() {
           continue;
         }
         waiting = min(share, count - first);
+        fetchedShapes += waiting;
         fetched = round == 0;
         if (fetched) {
           total = waiting;

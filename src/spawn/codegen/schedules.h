@@ -19,7 +19,8 @@ struct Schedule {
   Queues queues = Queues::mixed;
 };
 
-/// sgl, rw, rules, heuristic, or default (as few as are worth it, docs/internals/spawn.md); nothing for other names.
+/// sgl, rw, rules, heuristic, or default (as few as are worth it, docs/internals/schedules.md); nothing for other
+/// names.
 std::optional<Schedule> namedSchedule(const Graph& graph, const std::string& name, const Heuristics& heuristics = {});
 constexpr const char* kScheduleNames[] = {"default", "sgl", "rw", "rules", "heuristic"};
 
