@@ -8,14 +8,19 @@
 // pixel to pixel, as fill's (layout.h). With exact areas, a pixel that a curve passes is asked at 16 x 16 points.
 #extension GL_GOOGLE_include_directive : require
 #include "vector/shared/canvas.glsl"
-const uint kTasks = kFillPatches, kLanes = kTasks * 32, kCurveWords = 4;
-shared uvec4 taskCurves[kTasks * kMaxTileCurves * kCurveWords]; // of each task, as numbers there say
+const uint kTasks = kFillPatches, kLanes = kTasks * 32, kCurveWords = 4, kNumberWords = kMaxTileCurves / 4;
+const uint kTaskWords = kNumberWords + kMaxTileCurves * kCurveWords;
+shared uvec4 taskCurves[kTasks * kTaskWords]; // of each task, the numbers of its curves, then these
 #define GPGP_PATCH_LOAD(slot, index) taskCurves[index]
 #include "vector/patches/items.glsl"
 layout(local_size_x = kLanes) in;
 layout(set = 0, binding = kBindEntries, std430) buffer Entries { uint entries[]; };
 shared uint masks[kTasks * 64], counts[kTasks * 64]; // of each pixel
 shared uint open_[kTasks * 64], openWhat[kTasks * 64], openCount;
+
+uint numberOf(uvec4 four, uint k) {
+  return (k & 2) == 0 ? ((k & 1) == 0 ? four.x : four.y) : ((k & 1) == 0 ? four.z : four.w);
+}
 
 void main() {
   const uint lane = gl_LocalInvocationID.x, task = lane / 32, own = lane % 32;
@@ -38,19 +43,21 @@ void main() {
     entry = (w.firstEntry + bitCount(w.edges & ((1u << (bit & 31)) - 1))) * kEntryWords;
     pixelX = x * kTileSize;
     pixelY = y * kTileSize;
-    const uint k = own / kCurveWords % kMaxTileCurves, word = own % kCurveWords;
-    if (own < kMaxTileCurves * kCurveWords && (record.what & (1u << k)) != 0) {
-      const uvec4 numbers = floatBitsToUint(fetch(slot, record.record + 1));
-      const uint number = numbers[k], kind = number >> kPatchCurveKind;
+    const uint k = own / kCurveWords, word = own % kCurveWords;
+    const uint base = task * kTaskWords;
+    const uvec4 numbers = floatBitsToUint(fetch(slot, record.record + 1 + k / 4));
+    if (own % 16 == 0) taskCurves[base + k / 4] = (numbers & ~kPatchCurvePlace) | (k + uvec4(0, 1, 2, 3)) * kCurveWords;
+    if ((record.what & (1u << k)) != 0) {
+      const uint number = numberOf(numbers, k), kind = number >> kPatchCurveKind;
       if (word < (kind == kPatchCubic ? 4 : kind + 1))
-        taskCurves[task * kMaxTileCurves * kCurveWords + own] =
+        taskCurves[base + kNumberWords + own] =
           floatBitsToUint(fetch(slot, curves + (number & kPatchCurvePlace) + word));
     }
   }
   masks[lane * 2] = masks[lane * 2 + 1] = counts[lane * 2] = counts[lane * 2 + 1] = 0;
   barrier();
   PatchItemRecord m;
-  TilePatchRecord patch_;
+  TilePatch patch_;
   vec4 scissor = vec4(0);
   const uint all = (1u << SAMPLES) - 1;
   if (drawn) {
@@ -58,11 +65,10 @@ void main() {
     const uint slot = items[m.item].slot;
     patch_ = fetchTilePatch(slot, record.record);
     scissor = items[m.item].scissor;
-    for (uint k = 0; k < kMaxTileCurves; ++k) // to where they lie now
-      patch_.curves[k] = (patch_.curves[k] & ~kPatchCurvePlace) | (k * kCurveWords);
+    patch_.place = task * kTaskWords - 1;
     for (uint k = 0; k < 2; ++k) {
       const uint pixel = own * 2 + k;
-      const uint what = passesThrough(slot, task * kMaxTileCurves * kCurveWords, patch_, m, scissor,
+      const uint what = passesThrough(slot, task * kTaskWords + kNumberWords, patch_, m, scissor,
                                       record.what & kPatchAllPass, float(pixelX + pixel % kTileSize),
                                       float(pixelY + pixel / kTileSize), 1.0);
       if (what == kPatchOutside) continue;
@@ -88,8 +94,7 @@ void main() {
       m = patchItem(other.what >> kPatchItemBit);
       patch_ = fetchTilePatch(items[m.item].slot, other.record);
       scissor = items[m.item].scissor;
-      for (uint c = 0; c < kMaxTileCurves; ++c)
-        patch_.curves[c] = (patch_.curves[c] & ~kPatchCurvePlace) | (c * kCurveWords);
+      patch_.place = of * kTaskWords - 1;
       record.place = other.place;
     }
     const uint inTile = pixel % 64;
@@ -97,7 +102,7 @@ void main() {
     const vec2 offset = isSample ? pointOf(SAMPLES, point) : pointOf(256, point - SAMPLES);
     const float x = float((record.place & 0xffff) * kTileSize + inTile % kTileSize) + offset.x;
     const float y = float((record.place >> 16) * kTileSize + inTile / kTileSize) + offset.y;
-    if (!patchHolds(0, of * kMaxTileCurves * kCurveWords, patch_, m, scissor, openWhat[at], x, y)) continue;
+    if (!patchHolds(0, of * kTaskWords + kNumberWords, patch_, m, scissor, openWhat[at], x, y)) continue;
     if (isSample) atomicOr(masks[pixel], 1u << point);
     else atomicAdd(counts[pixel], 1);
   }

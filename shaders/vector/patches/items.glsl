@@ -41,7 +41,7 @@ uint patchItemOf(uint patch_, uint count) { // of `count` the last one that begi
   }
   return low;
 }
-TilePatchRecord fetchTilePatch(uint slot, uint place) {
-  const uvec4 rest = floatBitsToUint(fetch(slot, place + 2));
-  return TilePatchRecord(fetch(slot, place), floatBitsToUint(fetch(slot, place + 1)), rest.x, rest.y, rest.z, 0);
+TilePatch fetchTilePatch(uint slot, uint place) {
+  const uvec4 rest = floatBitsToUint(fetch(slot, place + 3));
+  return TilePatch(fetch(slot, place), rest.x, rest.y, rest.z, place);
 }

@@ -12,9 +12,9 @@
 #define GPGP_SHADERS_VECTOR_PATCHES_TILE_H
 
 // Beside curves, what may pass through a square: the patch's lines, and the item's scissor.
-GPGP_PATCH_CONST uint kPatchRowsPass = 16u;
-GPGP_PATCH_CONST uint kPatchScissorPasses = 32u;
-GPGP_PATCH_CONST uint kPatchAllPass = 63u;
+GPGP_PATCH_CONST uint kPatchRowsPass = 256u;
+GPGP_PATCH_CONST uint kPatchScissorPasses = 512u;
+GPGP_PATCH_CONST uint kPatchAllPass = 1023u;
 GPGP_PATCH_CONST uint kPatchOutside = 0x80000000u; // in place of these: nothing of the patch is there
 
 struct SquareBox {
@@ -60,24 +60,25 @@ GPGP_FN SquareBox squareBox(PatchItemRecord m, float px, float py, float size) {
   return box;
 }
 
-GPGP_FN TilePatchRecord loadTilePatch(uint slot, uint place) {
-  TilePatchRecord patch_;
+// A TilePatchRecord whose curves' numbers stay where they are: from vec4 `place` + 1 on.
+struct TilePatch {
+  vec4 box;
+  uint curveCount, lefts, path, place;
+};
+GPGP_FN TilePatch loadTilePatch(uint slot, uint place) {
+  const uvec4 rest = GPGP_PATCH_LOAD(slot, place + 3u);
+  TilePatch patch_;
   patch_.box = GPGP_PATCH_FLOAT(slot, place);
-  patch_.curves = GPGP_PATCH_LOAD(slot, place + 1u);
-  const uvec4 rest = GPGP_PATCH_LOAD(slot, place + 2u);
   patch_.curveCount = rest.x;
   patch_.lefts = rest.y;
   patch_.path = rest.z;
-  patch_.pad0 = 0u;
+  patch_.place = place;
   return patch_;
-}
-GPGP_FN uint curveNumber(TilePatchRecord patch_, uint k) {
-  return k < 2u ? (k == 0u ? patch_.curves.x : patch_.curves.y) : (k == 2u ? patch_.curves.z : patch_.curves.w);
 }
 
 // What passes through a square, of what passes through the one around it (`what`); kPatchOutside: nothing is there,
 // 0: all of it is inside.
-GPGP_FN uint passesThrough(uint slot, uint curves, TilePatchRecord patch_, PatchItemRecord m, vec4 scissor, uint what,
+GPGP_FN uint passesThrough(uint slot, uint curves, TilePatch patch_, PatchItemRecord m, vec4 scissor, uint what,
                            float px, float py, float size) {
   uint passes = 0u;
   if ((what & kPatchScissorPasses) != 0u) {
@@ -95,7 +96,7 @@ GPGP_FN uint passesThrough(uint slot, uint curves, TilePatchRecord patch_, Patch
   const float first = max(low.y, top), last = min(high.y, bottom);
   for (uint k = 0u; k < patch_.curveCount; ++k) {
     if ((what & (1u << k)) == 0u) continue;
-    const uint number = curveNumber(patch_, k);
+    const uint number = gpgpCurveOf(slot, patch_.place, k);
     GpgpPatchCurve c = gpgpLoadEnds(slot, curves, number, origin);
     if (high.y < c.start.y || low.y >= c.bottom) continue;
     uint side = 0u;
@@ -116,8 +117,8 @@ GPGP_FN uint passesThrough(uint slot, uint curves, TilePatchRecord patch_, Patch
 }
 
 // Whether a point of a pixel lies in the patch, where `what` passes through the pixel.
-GPGP_FN bool patchHolds(uint slot, uint curves, TilePatchRecord patch_, PatchItemRecord m, vec4 scissor, uint what,
-                        float px, float py) {
+GPGP_FN bool patchHolds(uint slot, uint curves, TilePatch patch_, PatchItemRecord m, vec4 scissor, uint what, float px,
+                        float py) {
   if ((what & kPatchScissorPasses) != 0u && !(px >= scissor.x && py >= scissor.y && px < scissor.z && py < scissor.w))
     return false;
   const vec3 at = patchPoint(m, px, py);
@@ -127,7 +128,7 @@ GPGP_FN bool patchHolds(uint slot, uint curves, TilePatchRecord patch_, PatchIte
     return false;
   for (uint k = 0u; k < patch_.curveCount; ++k) {
     if ((what & (1u << k)) == 0u) continue;
-    const uint number = curveNumber(patch_, k);
+    const uint number = gpgpCurveOf(slot, patch_.place, k);
     const GpgpPatchCurve c = gpgpLoadCurve(slot, curves, number, origin);
     if (!(at.y >= c.start.y && at.y < c.bottom)) continue;
     if (gpgpRightOf(slot, curves, number, c, vec2(at.x - c.start.x, at.y - c.start.y)) != (k < patch_.lefts))
@@ -143,7 +144,7 @@ GPGP_FN vec2 pointOf(uint samples, uint i) {
 }
 
 // The squares of tiles, left, top, right and bottom, exclusive, that a patch may touch; `tiles`: those of its path.
-GPGP_FN uvec4 patchTiles(TilePatchRecord patch_, PatchItemRecord m, float near, uvec4 tiles) {
+GPGP_FN uvec4 patchTiles(TilePatch patch_, PatchItemRecord m, float near, uvec4 tiles) {
   const vec2 origin = originOf(m);
   vec2 low = vec2(3e38f, 3e38f), high = vec2(-3e38f, -3e38f);
   for (uint corner = 0u; corner < 4u; ++corner) {

@@ -26,7 +26,7 @@ void mark(PlacedPath p, uint x, uint y, bool whole) {
 }
 
 // What a task's patch does in a square of `tiles` tiles along a side.
-uint passes(uint task, PatchItemRecord m, TilePatchRecord patch_, uint slot, uint x, uint y, uint tiles, uint what) {
+uint passes(uint task, PatchItemRecord m, TilePatch patch_, uint slot, uint x, uint y, uint tiles, uint what) {
   const float size = float(tiles * kTileSize);
   return passesThrough(slot, m.curves, patch_, m, items[m.item].scissor, what, float(x * kTileSize),
                        float(y * kTileSize), size);
@@ -68,8 +68,8 @@ void main() {
 #else
       const uint i = base + lane, item = patchItemOf(i, table.items);
       const PatchItemRecord m = patchItem(item);
-      const uint slot = items[m.item].slot, place = m.patches + (i - m.firstPatch) * 3;
-      const TilePatchRecord patch_ = fetchTilePatch(slot, place);
+      const uint slot = items[m.item].slot, place = m.patches + (i - m.firstPatch) * kTilePatchSize;
+      const TilePatch patch_ = fetchTilePatch(slot, place);
       const uint path = items[m.item].firstPath + patch_.path;
       taskItem[lane] = item;
       taskPatch[lane] = place;
@@ -115,7 +115,7 @@ void main() {
         const uvec4 tiles = taskTiles[task];
         const PatchItemRecord m = patchItem(taskItem[task]);
         const uint slot = items[m.item].slot, k = part - firstPart[task];
-        const TilePatchRecord patch_ = fetchTilePatch(slot, taskPatch[task]);
+        const TilePatch patch_ = fetchTilePatch(slot, taskPatch[task]);
         const PlacedPath p = paths[taskPath[task]];
         if (!taskSquares[task]) {
           const uint across = tiles.z - tiles.x;

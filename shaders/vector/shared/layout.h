@@ -239,7 +239,7 @@ struct CanvasCounters {
 // kMaxTileCurves curves, by number (gpgp/shaders/patches.h), those on the left first.
 struct TilePatchRecord {
   vec4 box;
-  uvec4 curves;
+  uvec4 curves[2];
   uint curveCount, lefts;
   uint path; // in the drawing
   uint pad0;
@@ -334,9 +334,10 @@ GPGP_CONST uint kTileListWords = 32u;
 GPGP_CONST uint kTileListPaths = 15u;
 GPGP_CONST uint kBinHead = 3u;    // 0, or 1 + how many paths the bin has as a list (pack.comp); where that lies; and:
 GPGP_CONST uint kBinGrouped = 2u; // 1: one of its paths may need the general shader
-GPGP_CONST uint kMaxTileCurves = 4u;                          // of a TilePatchRecord
+GPGP_CONST uint kMaxTileCurves = 8u;                          // of a TilePatchRecord
 GPGP_CONST uint kPatchBlockTiles = 8u, kPatchBlocks = 65536u; // side of a square; room for as many
-GPGP_CONST uint kPatchItemBit = 8u;
+GPGP_CONST uint kTilePatchSize = 4u;                          // vec4
+GPGP_CONST uint kPatchItemBit = 10u;
 GPGP_CONST uint kFillPatches = 4u;             // of a workgroup of patches/fill.comp
 GPGP_CONST uint kEntryPatch = (1u << 29) - 1u; // patches of a drawing, at most
 
@@ -355,7 +356,7 @@ static_assert(sizeof(gpgp::shader::ItemRecord) == 160 && sizeof(gpgp::shader::Sh
               sizeof(gpgp::shader::SlotRecord) == 16 && sizeof(gpgp::shader::PlacementRecord) == 48 &&
               sizeof(gpgp::shader::BoxedPath) == 48 && sizeof(gpgp::shader::TileWord) == 16 &&
               sizeof(gpgp::shader::CanvasHeader) == 176 && sizeof(gpgp::shader::CanvasCounters) == 160 &&
-              sizeof(gpgp::shader::TilePatchRecord) == 48 && sizeof(gpgp::shader::PatchItemRecord) == 112 &&
+              sizeof(gpgp::shader::TilePatchRecord) == 64 && sizeof(gpgp::shader::PatchItemRecord) == 112 &&
               sizeof(gpgp::shader::PatchPlaceRecord) == 16 && sizeof(gpgp::shader::PatchTableRecord) == 32 &&
               sizeof(gpgp::shader::FlatSegmentRecord) == 24);
 #endif

@@ -14,7 +14,6 @@ using shader::PatchItemRecord;
 using shader::PatchReader;
 using shader::PatchTableRecord;
 using shader::PlacedPath;
-using shader::TilePatchRecord;
 using shader::uvec4;
 using shader::vec4;
 
@@ -27,7 +26,7 @@ template <class T> T recordAt(const CpuInput& input, size_t place) {
 }
 
 /// A patch of a path, in the rows and columns of pixels of one tile.
-void coverTile(const CpuInput& input, PatchReader& reader, uint32_t curves, const TilePatchRecord& patch,
+void coverTile(const CpuInput& input, PatchReader& reader, uint32_t curves, const PatchReader::TilePatch& patch,
                const PatchItemRecord& m, const vec4& scissor, uint32_t what, uint32_t x, uint32_t y,
                std::span<CpuCoverage> path) {
   const uint32_t samples = input.header.samples, all = (1u << samples) - 1;
@@ -75,7 +74,8 @@ bool coverByPatches(const CpuInput& input, uint32_t itemIndex, CpuPlaces& places
     PatchReader reader({reinterpret_cast<const uvec4*>(asset.records.data()), asset.records.size()});
     const auto first = static_cast<uint32_t>(asset.first);
     for (uint32_t i = m.firstPatch; i < end; ++i) {
-      const TilePatchRecord patch = reader.loadTilePatch(0, m.patches - first + (i - m.firstPatch) * 3);
+      const PatchReader::TilePatch patch =
+          reader.loadTilePatch(0, m.patches - first + (i - m.firstPatch) * shader::kTilePatchSize);
       const uint32_t path = item.firstPath + patch.path;
       const PlacedPath& p = places.paths[path];
       if (p.left >= p.right) continue;

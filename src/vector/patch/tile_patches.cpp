@@ -54,8 +54,8 @@ core::Result<TilePatches> makeTilePatches(const Drawing& drawing, std::pmr::memo
     if (made.curves.size() > PatchReader::kPatchCurvePlace)
       return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing has too many curves for patches");
     for (const JoinedPatch& p : path.patches) {
-      TilePatchRecord record{boxOf(path, p), {0, 0, 0, 0}, p.curveCount, p.lefts, index - begin, 0};
-      for (uint32_t k = 0; k < p.curveCount; ++k) record.curves[static_cast<int>(k)] = places[p.curves[k]];
+      TilePatchRecord record{boxOf(path, p), {}, p.curveCount, p.lefts, index - begin, 0};
+      for (uint32_t k = 0; k < p.curveCount; ++k) record.curves[k / 4][static_cast<int>(k % 4)] = places[p.curves[k]];
       made.patches.push_back(record);
     }
     made.ends.push_back(static_cast<uint32_t>(made.patches.size()));
