@@ -41,7 +41,8 @@ public:
   const bool subgroups; ///< shaders with subgroup arithmetic
   core::ResourceIndex history = 0, image8 = 0, image16 = 0;
   core::ResourceIndex fromHost = 0, paths = 0, words = 0, bins = 0, entries = 0, counters = 0, items = 0, images = 0,
-                      segments = 0, rows = 0, shapes = 0, aside = 0, pictures = 0, operations = 0, layeredHistory = 0, imageColors = 0;
+                      segments = 0, rows = 0, shapes = 0, aside = 0, pictures = 0, operations = 0, layeredHistory = 0,
+                      imageColors = 0;
 };
 
 // Stages, in the order in which they are recorded.

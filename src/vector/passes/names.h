@@ -53,7 +53,7 @@ enum Conditions : uint32_t {
   kAloneOne,
   kAloneDrawings,
   kSiftPlain,
-  kImagePages, // of images, more than one
+  kImagePages,  // of images, more than one
   kPresent = 48 // by target
 };
 static_assert(kPresent + 2 < core::kMaxConditions);
