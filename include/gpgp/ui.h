@@ -1,7 +1,7 @@
 /* gpgp ui: lists of shapes, images, text and drawings for user interfaces; panels in the world; hit tests.
  *
- *   list   Shapes, images, nine-slices, triangles, text and drawings in painting order, with stacks of transforms, clips and
- *          opacity. A list is filled anew every frame, or kept.
+ *   list   Shapes, images, nine-slices, triangles, text and drawings in painting order, with stacks of transforms,
+ * clips and opacity. A list is filled anew every frame, or kept.
  *
  *   gpgpCreateList -> each frame: gpgpResetList, gpgpPush..., gpgpAdd..., gpgpPopState
  *   -> GpgpCanvasItem::list -> gpgpRecordPrepareCanvas
@@ -39,7 +39,7 @@ GPGP_API void GPGP_CALL gpgpDestroyList(GpgpList list);
  *  @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpResetList(GpgpList list);
 
-/** Maximum nesting depth of the state stack: transforms, clips, opacities and groups together. At most
+/** Maximum nesting depth of the state stack: transforms, clips, opacities, groups, layers and masks together. At most
  *  GPGP_MAX_CLIP_DEPTH of them may be clips, and at most GPGP_MAX_OPACITY_DEPTH groups, counting the groups of
  *  drawings that are added inside. The number of states one after another is limited only by GpgpCanvasCreateInfo's
  *  budgets. */
@@ -79,6 +79,47 @@ GPGP_API GpgpResult GPGP_CALL gpgpPushOpacity(GpgpList list, float opacity);
  *  A group counts against maxDrawings. If it is neither opaque nor fully transparent, the pixels it covers cost more.
  *  Errors: INVALID_ARGUMENT (not 0 to 1; nested too deep). @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpPushGroup(GpgpList list, float opacity);
+
+/** What is done with the picture of a layer. Zeroed, it shows nothing: set opacity to 1. */
+typedef struct GpgpListLayer {
+  GpgpBlendMode blend;          /**< with what lies behind, inside the layer around it */
+  float opacity;                /**< 0 to 1 */
+  const GpgpFilterStep* filter; /**< NULL: none. As GpgpLayer::filter (layers.h); filter space is the current space. */
+  uint32_t filterCount;         /**< at most GPGP_MAX_FILTER_STEPS; 0 while `filter` is not NULL: nothing shows */
+  /** VK_FALSE: the filter takes the layer's picture. VK_TRUE: it takes what lies behind, inside the layer around it,
+   * and its result is painted over that, with the clips, mask and opacity of the layer; the picture follows on top. The
+   *  canvas's background and what the engine draws behind the canvas are not part of it. */
+  VkBool32 backdrop;
+  /** Left, top, right, bottom in the current space: nothing of the layer shows outside of the box around it on the
+   *  canvas. All 0: no such box. It spares work where the clips around are larger. */
+  float bounds[4];
+  uint32_t mask; /**< what gpgpPushMask gave; 0: none */
+  GpgpMaskKind maskKind;
+  GpgpImageEncoding maskEncoding; /**< of what luminance is computed from */
+  VkBool32 maskInverted;          /**< VK_TRUE: 1 - the mask's alpha multiplies the layer; for GPGP_MASK_ALPHA */
+} GpgpListLayer;
+
+/** Pushes a layer: everything added until the matching gpgpPopState makes a picture of its own, which is then filtered,
+ *  clipped, masked, made less than opaque and blended with what lies behind, in this order. The clips pushed around a
+ *  layer cut its result, not what goes into its filter; clips, groups and layers may be pushed inside.
+ *
+ *  The canvas must be made with room for layers (GpgpCanvasCreateInfo::maxLayerPixels). A layer takes pictures as large
+ *  as what of it can be seen. Each layer, each clip around one, and each stretch of things between layers counts
+ *  against maxDrawings. A list with layers is one thing for budgets: where they do not suffice, it and all above it are
+ *  left out.
+ *
+ *  Not supported: layers inside groups, which fade as a whole themselves; GPGP_FILTER_COMPONENT_TRANSFER,
+ *  CONVOLVE_MATRIX, TURBULENCE and GROUP; filters and masks in perspective (the recording fails).
+ *  Errors: INVALID_ARGUMENT (the message says what), UNSUPPORTED (see above), OUT_OF_HOST_MEMORY.
+ *  @threads handle @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpPushLayer(GpgpList list, const GpgpListLayer* layer);
+
+/** Pushes a mask: everything added until the matching gpgpPopState is painted only as a mask of layers that name it. It
+ *  lies in the space in which it was added, and begins without the clips, opacities and groups around it. Writes the
+ *  mask's number for GpgpListLayer::mask, which holds until the list is reset, for any number of layers that are pushed
+ *  after the mask was popped.
+ *  Errors: INVALID_ARGUMENT (nested too deep), OUT_OF_HOST_MEMORY. @threads handle */
+GPGP_API GpgpResult GPGP_CALL gpgpPushMask(GpgpList list, uint32_t* mask);
 
 /** Ends the state that the last unmatched gpgpPush... began. Every push must be popped before the list is shown.
  *  Errors: INVALID_ARGUMENT (nothing is pushed). @threads handle */
@@ -163,9 +204,9 @@ typedef struct GpgpListTriangles {
    *  indexCount and indexType are ignored. */
   const void* indices;
   uint32_t indexCount;
-  VkIndexType indexType;        /**< VK_INDEX_TYPE_UINT16 or VK_INDEX_TYPE_UINT32 */
-  GpgpImageEncoding encoding;   /**< of the vertices' colours */
-  VkBool32 premultiplied;       /**< VK_TRUE: colours are multiplied by alpha, as they are encoded */
+  VkIndexType indexType;      /**< VK_INDEX_TYPE_UINT16 or VK_INDEX_TYPE_UINT32 */
+  GpgpImageEncoding encoding; /**< of the vertices' colours */
+  VkBool32 premultiplied;     /**< VK_TRUE: colours are multiplied by alpha, as they are encoded */
   /** Index into GpgpCanvasInfo::images, counted from the item's firstImage, below GPGP_MAX_IMAGES: colours multiply the
    *  image. Or GPGP_IMAGE_NONE. */
   uint32_t image;

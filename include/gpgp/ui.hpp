@@ -43,11 +43,20 @@ public:
   }
   GpgpResult pushOpacity(float opacity) noexcept { return gpgpPushOpacity(get(), opacity); }
   GpgpResult pushGroup(float opacity) noexcept { return gpgpPushGroup(get(), opacity); }
+  GpgpResult pushLayer(const GpgpListLayer& layer) noexcept { return gpgpPushLayer(get(), &layer); }
+  /// gpgpPushMask. The value is the mask's number.
+  Result<uint32_t> pushMask() noexcept {
+    uint32_t mask = 0;
+    const GpgpResult code = gpgpPushMask(get(), &mask);
+    return Result<uint32_t>(code, mask);
+  }
   /// gpgpPopState
   GpgpResult pop() noexcept { return gpgpPopState(get()); }
   /// gpgpAddShapes with one shape.
   GpgpResult add(const GpgpListShape& shape) noexcept { return gpgpAddShapes(get(), &shape, 1); }
   GpgpResult add(const GpgpListShape* shapes, uint32_t count) noexcept { return gpgpAddShapes(get(), shapes, count); }
+  /// gpgpAddTriangles
+  GpgpResult add(const GpgpListTriangles& triangles) noexcept { return gpgpAddTriangles(get(), &triangles); }
   /// gpgpAddText. glyphSet is a GlyphSet or its C handle.
   GpgpResult add(GpgpAsset glyphSet, const GpgpGlyphInstance* glyphs, uint32_t count, uint64_t id = 0) noexcept {
     return gpgpAddText(get(), glyphSet, glyphs, count, id);

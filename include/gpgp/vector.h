@@ -503,9 +503,9 @@ typedef struct GpgpCanvasCreateInfo {
   uint32_t maxTilePatches;
   /** Images in one recording, at most GPGP_MAX_IMAGES; 0: 8. Rounded up to a multiple of 8. */
   uint32_t maxImages;
-  /** Pixels that paths with images cover in recordings of more than 8 images, at most 2^28; 0: maxWidth x maxHeight. Such
-   *  recordings find the colours of images before they rasterise, 8 images at a time: a path takes the tiles of 8 x 8
-   *  pixels of its box on the canvas. A pixel takes 8.25 bytes, on canvases with maxImages above 8. Paths that find no
+  /** Pixels that paths with images cover in recordings of more than 8 images, at most 2^28; 0: maxWidth x maxHeight.
+   * Such recordings find the colours of images before they rasterise, 8 images at a time: a path takes the tiles of 8 x
+   * 8 pixels of its box on the canvas. A pixel takes 8.25 bytes, on canvases with maxImages above 8. Paths that find no
    *  room are left out, and the report's status is BUDGET_EXCEEDED. */
   uint32_t maxImagePixels;
 } GpgpCanvasCreateInfo;

@@ -68,6 +68,23 @@ GpgpResult GPGP_CALL gpgpPushGroup(GpgpList handle, float opacity) {
   return withList("gpgpPushGroup", handle, [&](Call&, List& list) { return list.pushGroup(opacity); });
 }
 
+GpgpResult GPGP_CALL gpgpPushLayer(GpgpList handle, const GpgpListLayer* layer) {
+  return withList("gpgpPushLayer", handle, [&](Call&, List& list) -> Result<void> {
+    if (!layer) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "layer is NULL");
+    return list.pushLayer(*layer);
+  });
+}
+
+GpgpResult GPGP_CALL gpgpPushMask(GpgpList handle, uint32_t* mask) {
+  return withList("gpgpPushMask", handle, [&](Call&, List& list) -> Result<void> {
+    if (!mask) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "mask is NULL");
+    const auto made = list.pushMask();
+    if (!made) return made.error();
+    *mask = *made;
+    return {};
+  });
+}
+
 GpgpResult GPGP_CALL gpgpPopState(GpgpList handle) {
   return withList("gpgpPopState", handle, [](Call&, List& list) { return list.pop(); });
 }

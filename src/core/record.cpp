@@ -333,7 +333,8 @@ Result<void> Recorder::record(const Record& record) {
       std::memcpy(constants_.mapped() + slot * passes_.constantsBytes + passes_.scratchOffsets[i], data.data(),
                   data.size());
   writeDescriptors(slot, record.bindings, scratch, scratchOffset, record.reports);
-  const VkDescriptorSet* const textureSets = textureSets_.empty() ? nullptr : &textureSets_[slot * passes_.texturePages];
+  const VkDescriptorSet* const textureSets =
+      textureSets_.empty() ? nullptr : &textureSets_[slot * passes_.texturePages];
   const uint32_t pages = static_cast<uint32_t>(record.pageConstants.size());
   for (uint32_t page = 0; page < pages; ++page) {
     const VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
@@ -439,7 +440,8 @@ Result<void> Recorder::record(const Record& record) {
           }
           if (pass.paged)
             bindPage(0);
-          else if (groups[0] && groups[1] && groups[2]) vk.CmdDispatch(cmd, groups[0], groups[1], groups[2]);
+          else if (groups[0] && groups[1] && groups[2])
+            vk.CmdDispatch(cmd, groups[0], groups[1], groups[2]);
         }
       }
       endLabel(cmd);

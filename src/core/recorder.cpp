@@ -128,7 +128,8 @@ Result<void> Recorder::init(PassList passes, std::span<const DrawShaders> draws)
   uint32_t sizeCount = 1;
   if (uniforms) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, uniforms * slotCount};
   if (images) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, images * slotCount};
-  if (textures) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures * slotCount * passes_.texturePages};
+  if (textures)
+    sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures * slotCount * passes_.texturePages};
   VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   poolInfo.maxSets = textures ? (1 + passes_.texturePages) * slotCount : slotCount;
   poolInfo.poolSizeCount = sizeCount;

@@ -50,7 +50,7 @@ struct Record {
   /// at. Passes that are not paged have the first page.
   std::span<const VkDescriptorImageInfo> pages;
   std::span<const uint32_t> pageConstants; ///< one a page
-  bool reports = false;        ///< its passes write the whole report to the resource of that kind: nothing is copied
+  bool reports = false; ///< its passes write the whole report to the resource of that kind: nothing is copied
 };
 
 struct DrawRecord {

@@ -165,7 +165,8 @@ struct CpuTest : CanvasTest {
       for (int k = 0; k < 3; ++k) v.color[k] = static_cast<uint8_t>(dice.upTo(v.color[3] + 1u));
     }
     std::vector<GpgpListVertex> strip;
-    for (size_t i = 0; i + 3 <= corners.size(); ++i) strip.insert(strip.end(), {corners[i], corners[i + 1], corners[i + 2]});
+    for (size_t i = 0; i + 3 <= corners.size(); ++i)
+      strip.insert(strip.end(), {corners[i], corners[i + 1], corners[i + 2]});
     return strip;
   }
 

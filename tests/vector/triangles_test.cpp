@@ -127,8 +127,8 @@ TEST_F(TrianglesTest, AreWhatAPlainRasteriserDraws) {
           const float length = std::hypot(dx, dy), nx = -dy / length, ny = dx / length;
           const uint8_t none = premultiplied ? 0 : 200;
           const std::array<uint8_t, 4> full{200, 90, 10, 255}, out{none, none, none, 0};
-          const GpgpListVertex a = corner(x, y, full), b = corner(x + dx, y + dy, full), c = corner(x + nx, y + ny, out),
-                               d = corner(x + dx + nx, y + dy + ny, out);
+          const GpgpListVertex a = corner(x, y, full), b = corner(x + dx, y + dy, full),
+                               c = corner(x + nx, y + ny, out), d = corner(x + dx + nx, y + dy + ny, out);
           for (const GpgpListVertex& v : {a, b, c, b, d, c}) mesh.push_back(v);
         }
         list.reset().add(mesh, premultiplied);
@@ -223,7 +223,7 @@ TEST_F(TrianglesTest, AnyNumberOfImagesPaints) {
   info.maxWidth = info.maxHeight = kSide;
   info.targets = canvasTargets;
   info.maxImages = kImages;
-  info.maxImagePixels = 2 * kSide * kSide;
+  info.maxImagePixels = 8 * kSide * kSide;
   canvas = recorder(gpgpCreateCanvas, info);
 
   const std::array<uint8_t, 4> white{255, 255, 255, 255};
@@ -254,7 +254,7 @@ TEST_F(TrianglesTest, AnyNumberOfImagesPaints) {
     const auto pixels = raster({list.item()}, kSide, kSide, 16, &report);
     EXPECT_EQ(report.base.status, GPGP_SUCCESS);
     EXPECT_GE(report.imagePixels, kImages * 144);
-    EXPECT_EQ(report.imagePixelsGiven, 2 * kSide * kSide);
+    EXPECT_EQ(report.imagePixelsGiven, 8 * kSide * kSide);
     show(projective ? "images_projective" : "images", pixels, kSide, kSide);
     const auto expect = [&](uint32_t x, uint32_t y, const std::array<float, 4>& wanted, const std::string& what) {
       if (projective) y = static_cast<uint32_t>((float(y) + 0.5f) / (1 + 0.0001f * (float(y) + 0.5f)));
@@ -266,8 +266,7 @@ TEST_F(TrianglesTest, AnyNumberOfImagesPaints) {
     };
     std::array<float, 4> stack{};
     for (uint32_t i = kImages; i > 0; --i)
-      for (size_t k = 0; k < 4; ++k)
-        stack[k] = texels[i - 1][k] / 255.0f + stack[k] * (1 - texels[i - 1][3] / 255.0f);
+      for (size_t k = 0; k < 4; ++k) stack[k] = texels[i - 1][k] / 255.0f + stack[k] * (1 - texels[i - 1][3] / 255.0f);
     expect(6, 120, stack, "all of them");
     for (uint32_t i = 0; i < kImages; ++i)
       expect(i % 8 * 16 + 5, i / 8 * 14 + 5,
@@ -304,7 +303,7 @@ TEST_F(TrianglesTest, AnyNumberOfImagesPaints) {
   }
   // What finds no room is left out, and said.
   fill(false);
-  for (int k = 0; k < 3; ++k) paint(5, 0, 0, kSide);
+  for (int k = 0; k < 8; ++k) paint(5, 0, 0, kSide);
   GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
   raster({list.item()}, kSide, kSide, 16, &report);
   EXPECT_EQ(report.base.status, GPGP_BUDGET_EXCEEDED);
@@ -319,7 +318,7 @@ TEST_F(TrianglesTest, TooManyImagesAreRefused) {
   images.assign(9, texture.view());
   TestList list(context);
   const GpgpFrame frame = advance();
-  const GpgpHistory history = makeView(64, 64);
+  const host::Image target(device, {.format = VK_FORMAT_R16G16B16A16_SFLOAT, .width = 64, .height = 64});
   device.submitAndWait([&](VkCommandBuffer commands) {
     EXPECT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
     const GpgpCanvasItem item = list.item();
@@ -327,13 +326,12 @@ TEST_F(TrianglesTest, TooManyImagesAreRefused) {
     info.width = info.height = 64;
     info.items = &item;
     info.itemCount = 1;
-    info.history = history;
+    info.target = target.target({}, {});
     info.images = images.data();
     info.imageCount = 9;
     EXPECT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_ERROR_INVALID_ARGUMENT);
     EXPECT_NE(lastMessage().find("imageCount is 9; the canvas was made for 8"), std::string::npos) << lastMessage();
   });
-  gpgpDestroyHistory(history);
 }
 
 // A quad of two triangles shows an image as a rectangle does.
@@ -366,8 +364,8 @@ TEST_F(TrianglesTest, ImagesAreThoseOfRectangles) {
         ASSERT_EQ(one[i].a, other[i].a) << &map - kMaps << " " << i; // the same samples
         if (other[i].a != 1) continue;
         // Beside an edge and on the diagonal, another place of the image is asked for.
-        const float difference = std::max({std::abs(one[i].r - other[i].r), std::abs(one[i].g - other[i].g),
-                                           std::abs(one[i].b - other[i].b)});
+        const float difference = std::max(
+            {std::abs(one[i].r - other[i].r), std::abs(one[i].g - other[i].g), std::abs(one[i].b - other[i].b)});
         (difference < 0.02f ? same : edges) += 1;
       }
       EXPECT_LE(edges * 8, same) << &map - kMaps << " " << image;
@@ -377,8 +375,8 @@ TEST_F(TrianglesTest, ImagesAreThoseOfRectangles) {
 TEST_F(TrianglesTest, StateAppliesToThem) {
   makeCanvas(64);
   const std::array<uint8_t, 4> red{255, 0, 0, 255};
-  const std::vector<GpgpListVertex> quad = {corner(0, 0, red),   corner(40, 0, red), corner(40, 40, red),
-                                            corner(0, 0, red),   corner(40, 40, red), corner(0, 40, red)};
+  const std::vector<GpgpListVertex> quad = {corner(0, 0, red), corner(40, 0, red),  corner(40, 40, red),
+                                            corner(0, 0, red), corner(40, 40, red), corner(0, 40, red)};
   TestList triangles(context), shapes(context);
   const auto fill = [&](TestList& list, auto&& add) {
     list.reset().push({1, 0, 0, 1, 4, 6}).fade(0.5f).clip({2, 2, 30, 38}).clip({0, 0, 40, 40}, {9, 9, 9, 9});
@@ -426,9 +424,15 @@ TEST_F(TrianglesTest, IndicesAndHits) {
   const uint32_t words[] = {4, 4, 4, 0, 1, 2, 0, 2, 3};
   for (const bool wide : {false, true}) {
     TestList list(context);
-    GpgpListTriangles info{corners, 5, wide ? static_cast<const void*>(words) : shorts, 9,
-                           wide ? VK_INDEX_TYPE_UINT32 : VK_INDEX_TYPE_UINT16, GPGP_IMAGE_LINEAR, VK_FALSE,
-                           GPGP_IMAGE_NONE, 33};
+    GpgpListTriangles info{corners,
+                           5,
+                           wide ? static_cast<const void*>(words) : shorts,
+                           9,
+                           wide ? VK_INDEX_TYPE_UINT32 : VK_INDEX_TYPE_UINT16,
+                           GPGP_IMAGE_LINEAR,
+                           VK_FALSE,
+                           GPGP_IMAGE_NONE,
+                           33};
     list.add(rectangle(0, 0, 30, 30)).push({1, 0, 0, 1, 5, 0});
     ASSERT_EQ(gpgpAddTriangles(list.list, &info), GPGP_SUCCESS) << lastMessage();
     list.pop();

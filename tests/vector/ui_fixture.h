@@ -26,6 +26,7 @@ struct TestList {
     return done(gpgpPushClip(list, box.data(), radii.data()));
   }
   TestList& fade(float opacity) { return done(gpgpPushOpacity(list, opacity)); }
+  TestList& layer(const GpgpListLayer& layer) { return done(gpgpPushLayer(list, &layer)); }
   TestList& group(float opacity) { return done(gpgpPushGroup(list, opacity)); }
   TestList& pop(int count = 1) {
     for (; count; --count) done(gpgpPopState(list));
@@ -38,8 +39,15 @@ struct TestList {
   }
   TestList& add(const std::vector<GpgpListVertex>& triangles, bool premultiplied = false,
                 uint32_t image = GPGP_IMAGE_NONE, GpgpImageEncoding encoding = GPGP_IMAGE_LINEAR, uint64_t id = 0) {
-    const GpgpListTriangles info{triangles.data(), static_cast<uint32_t>(triangles.size()), nullptr, 0,
-                                 VK_INDEX_TYPE_UINT16, encoding, premultiplied, image, id};
+    const GpgpListTriangles info{triangles.data(),
+                                 static_cast<uint32_t>(triangles.size()),
+                                 nullptr,
+                                 0,
+                                 VK_INDEX_TYPE_UINT16,
+                                 encoding,
+                                 premultiplied,
+                                 image,
+                                 id};
     return done(gpgpAddTriangles(list, &info));
   }
   GpgpCanvasItem item() const {

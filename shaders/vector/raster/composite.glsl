@@ -5,7 +5,8 @@
 // inside a path nor edges shared by two paths let anything through. The first edge that a pixel meets counts by its
 // area; what lies behind is scaled to what that leaves.
 // PAINTS: whether there are gradients. RICH: whether there are groups and projective items. IMAGES: whether there are
-// images. COLORS_ALONE: images.comp. TARGET: 0 the view alone, 1 an rgba8 image, 2 an rgba16f image (and the view, if one is given).
+// images. COLORS_ALONE: images.comp, which writes no pixels. TARGET: 0 the view alone, 1 an rgba8 image, 2 an rgba16f
+// image (and the view, if one is given).
 #include "vector/shared/color.h"
 #include "vector/raster/composite.h"
 #include "vector/shared/entry.h"

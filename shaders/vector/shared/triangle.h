@@ -96,8 +96,8 @@ GPGP_FN vec4 triangleColor(ShapeRecord s, vec3 weights) {
   const vec2 cr = unpackUnorm2x16(floatBitsToUint(s.frame.z)), cb = unpackUnorm2x16(floatBitsToUint(s.frame.w));
   // What is the same in all corners stays as it is, and what is opaque but for rounding is opaque.
   const vec4 first = vec4(ar.x, ar.y, ab.x, ab.y);
-  vec4 color = first + ((vec4(br.x, br.y, bb.x, bb.y) - first) * weights.y +
-                        (vec4(cr.x, cr.y, cb.x, cb.y) - first) * weights.z);
+  vec4 color =
+      first + ((vec4(br.x, br.y, bb.x, bb.y) - first) * weights.y + (vec4(cr.x, cr.y, cb.x, cb.y) - first) * weights.z);
   if (color.w > 0.99999f) color.w = 1.0f;
   const bool straight = (floatBitsToUint(s.ratio) & kTriangleStraight) != 0u;
   return straight ? vec4(color.x * color.w, color.y * color.w, color.z * color.w, color.w) : color;

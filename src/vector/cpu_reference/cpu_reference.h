@@ -89,8 +89,8 @@ std::vector<std::vector<uint32_t>> binOnCpu(const CpuInput& input, const CpuPlac
 struct CpuColor {
   shader::vec4 color{}, doubt{};
 };
-/// What paints in a pixel, premultiplied: a path's colour, times its gradient's or image's, or a triangle's. `mask`: the
-/// samples that the path covers.
+/// What paints in a pixel, premultiplied: a path's colour, times its gradient's or image's, or a triangle's. `mask`:
+/// the samples that the path covers.
 CpuColor paintAt(const CpuInput& input, const CpuPlaces& places, const shader::PlacedPath& path, uint32_t x, uint32_t y,
                  uint32_t mask);
 /// The whole picture, as the target receives it: before it is rounded to the format.

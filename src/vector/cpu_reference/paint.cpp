@@ -222,8 +222,7 @@ CpuColor paintAt(const CpuInput& input, const CpuPlaces& places, const shader::P
   drawingPoint(input, input.placements[path.item], item, middle, at, reach);
   // (c + d)(p + q) - c p, of which all are positive.
   const auto paintBy = [&color](const CpuColor& painted) {
-    color = {color.color * painted.color,
-             color.color * painted.doubt + color.doubt * (painted.color + painted.doubt)};
+    color = {color.color * painted.color, color.color * painted.doubt + color.doubt * (painted.color + painted.doubt)};
   };
   const uint32_t record = path.paint & ~shader::kPaintsTriangle;
   if (triangle) {

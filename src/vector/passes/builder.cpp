@@ -44,7 +44,7 @@ PassBuilder::PassBuilder(const CanvasSizes& canvas, const core::Device& device, 
   counters = list.add({"counters", scratch, sizeof(CanvasCounters)});
   items = list.add({"items", scratch, heads + shader::kFirstItems * 4 + placed * sizeof(ItemRecord)});
   static constexpr const char* kImageNames[shader::kPageImages] = {"images[0]", "images[1]", "images[2]", "images[3]",
-                                                                  "images[4]", "images[5]", "images[6]", "images[7]"};
+                                                                   "images[4]", "images[5]", "images[6]", "images[7]"};
   list.texturePages = sizes.imagePages;
   for (uint32_t i = 0; i < shader::kPageImages; ++i) {
     const auto added = list.add({kImageNames[i], texture, 0, true});
@@ -64,7 +64,7 @@ PassBuilder::PassBuilder(const CanvasSizes& canvas, const core::Device& device, 
       list.add({"operations", buffer, VkDeviceSize(sizes.layers.operations) * sizeof(shader::OperationRecord), true});
   layeredHistory = list.add({"layered history", buffer, 0, true});
   imageColors =
-      list.add({"image colors", scratch, std::max<VkDeviceSize>(sizes.imageTiles * VkDeviceSize(16 + 64 * 8), 16)});
+      list.add({"images[colors]", scratch, std::max<VkDeviceSize>(sizes.imageTiles * VkDeviceSize(16 + 64 * 8), 16)});
   assert(imageColors == shader::kBindImageColors);
   if (sizes.maxTilePatches) {
     constexpr VkDeviceSize kRecord = sizeof(shader::PatchPlaceRecord);

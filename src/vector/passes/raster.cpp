@@ -6,13 +6,10 @@ using enum core::UseKind;
 
 void addImages(PassBuilder& b) {
   if (b.sizes.imagePages < 2) return;
-  core::Pass& pass = b.dispatch("images", b.sizes.software ? vector_images_software : vector_images,
-                                {{b.paths, read},
-                                 {b.words, read},
-                                 {b.entries, read},
-                                 {b.counters, read},
-                                 {b.imageColors, readWrite}},
-                                kImageTiles, kImagePages);
+  core::Pass& pass =
+      b.dispatch("images", b.sizes.software ? vector_images_software : vector_images,
+                 {{b.paths, read}, {b.words, read}, {b.entries, read}, {b.counters, read}, {b.imageColors, readWrite}},
+                 kImageTiles, kImagePages);
   pass.paged = true;
   b.useImages(pass);
 }

@@ -293,11 +293,11 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   // Shaders name all images, so those that are not there are bound to the first one.
   for (uint32_t i = 0; i < pages * shader::kPageImages; ++i) {
     const GpgpCanvasImage& from = info.images[i < info.imageCount ? i : 0];
-    const VkDescriptorImageInfo image{from.sampler, from.view, from.layout};
+    const VkDescriptorImageInfo texture{from.sampler, from.view, from.layout};
     if (pages > 1)
-      images_[i] = image;
+      images_[i] = texture;
     else
-      r.bindings[shader::kBindImages + i].texture = image;
+      r.bindings[shader::kBindImages + i].texture = texture;
   }
   if (pages > 1) {
     r.pages = std::span(images_).first(size_t(pages) * shader::kPageImages);
@@ -402,7 +402,8 @@ bool Canvas::takeCanvasReport(GpgpCanvasReport& report) {
   report.tilePatches = counters.tilePatches;
   report.tilePatchesGiven = executed ? sizes_.maxTilePatches : 0;
   constexpr uint32_t kTilePixels = shader::kTileSize * shader::kTileSize;
-  report.imagePixels = static_cast<uint32_t>(std::min<uint64_t>(uint64_t(counters.imageTiles) * kTilePixels, UINT32_MAX));
+  report.imagePixels =
+      static_cast<uint32_t>(std::min<uint64_t>(uint64_t(counters.imageTiles) * kTilePixels, UINT32_MAX));
   report.imagePixelsGiven = executed ? sizes_.imageTiles * kTilePixels : 0;
   if (counters.pathsDropped) report.base.status = GPGP_BUDGET_EXCEEDED;
   if (counters.ended) report.base.status = GPGP_ERROR_UNSUPPORTED;

@@ -42,8 +42,8 @@ private:
   LayerTables layers_;
   std::pmr::vector<VkDescriptorImageInfo> images_; ///< of pages, where there is more than one
   std::pmr::vector<uint32_t> imagesHold_;          ///< by page, as CanvasHeader::images
-  size_t operationCount_ = 0;                 ///< of the last recording
-  std::array<uint32_t, 6> operationPasses_{}; ///< by OPERATIONS (operate.comp)
+  size_t operationCount_ = 0;                      ///< of the last recording
+  std::array<uint32_t, 6> operationPasses_{};      ///< by OPERATIONS (operate.comp)
 };
 
 } // namespace gpgp::vector

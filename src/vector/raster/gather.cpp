@@ -1,5 +1,6 @@
 #include "vector/raster/gather.h"
 
+#include "vector/raster/list_layers.h"
 #include "vector/shared/edge.h"
 #include "vector/shared/shape.h"
 
@@ -18,17 +19,13 @@ ItemTables::ItemTables(const ItemBudgets& budgets, std::pmr::memory_resource* me
     : sources(budgets.items, memory), shapes(budgets.shapes, memory), paints(budgets.shapes, memory),
       stops(size_t(budgets.shapes) * 2, memory), clips(budgets.items, memory), layers(budgets.items, memory),
       patchItems(budgets.items, memory), clipStates(budgets.items, memory), groupStates(budgets.items, memory),
-      assets(maxAssets(budgets), memory), assetSlots(assets.size(), memory),
-      slots(assets.size() + 1 + Gather::kPatchTableSlots, memory),
+      clipsWanted(budgets.items, memory), groupsWanted(budgets.items, memory), assets(maxAssets(budgets), memory),
+      assetSlots(assets.size(), memory), slots(assets.size() + 1 + Gather::kPatchTableSlots, memory),
       assetCells(std::bit_ceil(2 * assets.size()), memory) {}
 
 bool ItemAsset::layered() const {
   if (drawing) return !drawing->plan().empty();
-  if (!list) return false;
-  return std::any_of(list->commands().begin(), list->commands().end(), [](const List::Command& command) {
-    const core::Object* asset = command.kind == List::Kind::drawing ? command.asset() : nullptr;
-    return asset && !static_cast<const DrawingAsset*>(asset)->plan().empty();
-  });
+  return list && hasLayers(*list);
 }
 
 core::Error Gather::wrong(GpgpResult code, const char* format, ...) const {
@@ -116,19 +113,13 @@ Result<void> Gather::plan(uint32_t index, const ItemAsset& asset) {
     return {};
   }
   const List& list = *asset.list;
-  for (const List::Command& command : list.commands()) {
-    entry_ = command.firstEntry;
-    const core::Object* object = command.kind == List::Kind::drawing ? command.asset() : nullptr;
-    const auto* drawing = static_cast<const DrawingAsset*>(object);
-    if (!drawing || drawing->plan().empty()) {
-      planner_->addPlain();
-      continue;
-    }
-    if (command.space.clip || command.space.group || !list.clips().empty() || !list.groups().empty())
-      return wrong(GPGP_ERROR_UNSUPPORTED, ": its drawing has layers, which a list with clips or groups does not show");
-    const Map whole = compose(compose(map, list.bases()[command.space.base]), command.space.map());
-    if (auto ok = planDrawing(*drawing, whole, item.opacity * command.opacity, own); !ok) return ok;
+  if (!hasLayers(list)) {
+    for (size_t i = 0; i < list.commands().size(); ++i) planner_->addPlain();
+    return {};
   }
+  const ListLayers::Bind bindDrawing = [this](const DrawingAsset& drawing) { return bind(drawing, drawing.tables()); };
+  ListLayers walk(*planner_, list, map, own.hidden ? shader::vec4(0) : own.scissor, bindDrawing);
+  if (auto ok = walk.plan(item.opacity); !ok) return wrong(ok.error().code, ".list%s", ok.error().text);
   return {};
 }
 
@@ -239,12 +230,12 @@ Result<void> Gather::add(uint32_t index, const ItemAsset& asset) {
 
 /// A drawing with as many of its first paths as there is room for.
 Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, float opacity, uint32_t firstImage,
-                                const Chain& clip) {
+                                const Chain& clip, bool plain) {
   if (drawing.images() && (firstImage > info_.imageCount || drawing.images() > info_.imageCount - firstImage))
     return wrong(GPGP_ERROR_INVALID_ARGUMENT, ": its drawing needs %u images from images[%u] on; imageCount is %u",
                  drawing.images(), firstImage, info_.imageCount);
   if (!drawing.plan().empty()) return addLayered(drawing, firstImage);
-  beginPlain();
+  if (plain) beginPlain();
   if (clip.layer && tables_.layers[clip.layer - 1].depth + drawing.layerDepth() > shader::kMaxLayerDepth)
     return wrong(GPGP_ERROR_UNSUPPORTED, ": with those of its drawing, more than %u groups fade in each other",
                  shader::kMaxLayerDepth);
@@ -310,7 +301,7 @@ void Gather::addShapes(const List& list, std::span<const List::Shape> from, uint
 }
 
 /// What each clip of a list leaves: a scissor where it is parallel to the canvas, otherwise a path that paints nothing.
-Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain& own) {
+Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain& own, bool all) {
   if (list.clips().size() > budgets_.items) {
     sourcesNeeded_ += static_cast<uint32_t>(list.clips().size());
     shapesNeeded_ += static_cast<uint32_t>(list.clips().size());
@@ -319,6 +310,7 @@ Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain&
     return {};
   }
   for (size_t i = 0; i < list.clips().size(); ++i) {
+    if (!all && !tables_.clipsWanted[i]) continue;
     const List::Clip& clip = list.clips()[i];
     Chain& state = tables_.clipStates[i];
     state = clip.parent ? tables_.clipStates[clip.parent - 1] : own;
@@ -350,10 +342,11 @@ Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain&
 }
 
 /// A layer for each group that is neither opaque nor hidden whole; `opacity` is that of each thing in the list.
-void Gather::resolveGroups(const List& list, float opacity) {
+void Gather::resolveGroups(const List& list, float opacity, bool all) {
   layersNeeded_ += static_cast<uint32_t>(list.groups().size());
   full_ = full_ || list.groups().size() > budgets_.items - layers;
   for (size_t i = 0; i < list.groups().size() && !full_; ++i) {
+    if (!all && !tables_.groupsWanted[i]) continue;
     const List::Group& group = list.groups()[i];
     const ItemTables::GroupState outer =
         group.parent ? tables_.groupStates[group.parent - 1] : ItemTables::GroupState{0, opacity};
@@ -373,49 +366,115 @@ Result<void> Gather::addList(const List& list, const GpgpCanvasItem& item, const
     return wrong(GPGP_ERROR_INVALID_ARGUMENT, ".list needs %u images from images[%u] on; imageCount is %u",
                  list.images(), item.firstImage, info_.imageCount);
   const Map map = toMap(item.transform, item.perspective);
+  if (planner_ && hasLayers(list)) return addLayeredList(list, item, map, own);
   if (planner_) lookAtPlain(); // clips lie where what they cut lies
-  if (auto ok = resolveClips(list, map, own); !ok) return ok;
-  resolveGroups(list, item.opacity);
-  // Shapes and texts that follow each other in the same space share a source.
-  uint32_t source = kNone, base = kNone, clip = kNone, group = kNone;
-  LayerRegion placed = region_;
-  for (const List::Command& command : list.commands()) {
-    entry_ = command.firstEntry;
-    const List::Space& space = command.space;
-    Chain state = space.clip && !full_ ? tables_.clipStates[space.clip - 1] : own;
-    float opacity = item.opacity;
-    if (space.group && !full_) {
-      state.layer = tables_.groupStates[space.group - 1].layer;
-      opacity = tables_.groupStates[space.group - 1].opacity;
-    }
-    if (command.kind == List::Kind::drawing) {
-      const core::Object* asset = command.asset();
-      if (!asset) return wrong(GPGP_ERROR_INVALID_HANDLE, ": its drawing was destroyed");
-      const auto& drawing = static_cast<const DrawingAsset&>(*asset);
+  if (auto ok = resolveClips(list, map, own, true); !ok) return ok;
+  resolveGroups(list, item.opacity, true);
+  Last last;
+  last.region = region_;
+  for (const List::Command& command : list.commands())
+    if (auto ok = addCommand(list, command, item, map, item.opacity, own, true, last); !ok) return ok;
+  return {};
+}
+
+Result<void> Gather::addCommand(const List& list, const List::Command& command, const GpgpCanvasItem& item,
+                                const Map& map, float opacity, const Chain& own, bool plain, Last& last) {
+  entry_ = command.firstEntry;
+  const List::Space& space = command.space;
+  Chain state = space.clip && !full_ ? tables_.clipStates[space.clip - 1] : own;
+  if (space.group && !full_) {
+    state.layer = tables_.groupStates[space.group - 1].layer;
+    opacity = tables_.groupStates[space.group - 1].opacity;
+  }
+  if (command.kind == List::Kind::drawing) {
+    const core::Object* asset = command.asset();
+    if (!asset) return wrong(GPGP_ERROR_INVALID_HANDLE, ": its drawing was destroyed");
+    const auto& drawing = static_cast<const DrawingAsset&>(*asset);
+    if (!drawing.resident()) return core::makeError(GPGP_NOT_READY, "a drawing is not resident");
+    const Map whole = compose(compose(map, list.bases()[space.base]), space.map());
+    if (command.firstImage > UINT32_MAX - item.firstImage)
+      return wrong(GPGP_ERROR_INVALID_ARGUMENT, ": firstImage is %u", command.firstImage);
+    return addDrawing(drawing, whole, opacity * command.opacity, item.firstImage + command.firstImage, state, plain);
+  }
+  if (plain) beginPlain();
+  const core::Object* asset = nullptr;
+  if (command.kind == List::Kind::text && !(asset = command.asset()))
+    return wrong(GPGP_ERROR_INVALID_HANDLE, ": its glyph set was destroyed");
+  if (space.base != last.base || space.clip != last.clip || space.group != last.group || region_ != last.region) {
+    last = {kNone, space.base, space.clip, space.group, region_};
+    last.source = addSource(compose(map, list.bases()[space.base]), opacity, item.firstImage, state);
+  }
+  if (command.kind == List::Kind::text) {
+    const auto glyphs = list.glyphs().subspan(command.first, command.count);
+    return addGlyphs(static_cast<const GlyphSet&>(*asset), glyphs, last.source);
+  }
+  if (last.source != kNone || full_) addShapes(list, list.shapes().subspan(command.first, command.count), last.source);
+  return {};
+}
+
+/// Marks what the commands of a run lie in.
+void Gather::wantClips(const List& list, const PlacedRun& run) {
+  const size_t clipCount = std::min(list.clips().size(), tables_.clipsWanted.size()),
+               groupCount = std::min(list.groups().size(), tables_.groupsWanted.size());
+  std::fill_n(tables_.clipsWanted.begin(), clipCount, uint8_t(0));
+  std::fill_n(tables_.groupsWanted.begin(), groupCount, uint8_t(0));
+  const bool commands = run.count != PlacedRun::kNone && run.count > 0;
+  for (uint32_t i = run.command; i < run.command + (commands ? run.count : 1); ++i) {
+    const List::Space& space = list.commands()[i].space;
+    for (uint32_t c = space.clip; c && c <= clipCount && !tables_.clipsWanted[c - 1]; c = list.clips()[c - 1].parent)
+      tables_.clipsWanted[c - 1] = 1;
+    for (uint32_t g = space.group; commands && g && g <= groupCount; g = list.groups()[g - 1].parent)
+      tables_.groupsWanted[g - 1] = 1;
+  }
+}
+
+/// One unit of the planner's, which has said what goes where.
+Result<void> Gather::addLayeredList(const List& list, const GpgpCanvasItem& item, const Map& map, const Chain& own) {
+  const uint32_t unit = unit_++;
+  full_ = full_ || unit >= planner_->units();
+  if (full_) {
+    pathsDropped_ += static_cast<uint32_t>(std::min<size_t>(list.shapes().size() + list.glyphs().size() + 1, 1u << 30));
+    return {};
+  }
+  constexpr float kFar = shader::kUnbounded;
+  for (const auto runs = planner_->runs(); nextRun_ < runs.size() && runs[nextRun_].unit == unit; ++nextRun_) {
+    const PlacedRun& run = runs[nextRun_];
+    const List::Command& first = list.commands()[run.command];
+    region_ = run.region;
+    entry_ = first.firstEntry;
+    const PixelBox& box = region_.box;
+    const Chain inside{{float(box.left), float(box.top), float(box.right), float(box.bottom)}, 0, false};
+    if (run.count == PlacedRun::kNone) { // of a drawing
+      const auto& drawing = static_cast<const DrawingAsset&>(*first.asset());
       if (!drawing.resident()) return core::makeError(GPGP_NOT_READY, "a drawing is not resident");
-      const Map whole = compose(compose(map, list.bases()[space.base]), space.map());
-      if (command.firstImage > UINT32_MAX - item.firstImage)
-        return wrong(GPGP_ERROR_INVALID_ARGUMENT, ": firstImage is %u", command.firstImage);
-      if (auto ok = addDrawing(drawing, whole, opacity * command.opacity, item.firstImage + command.firstImage, state);
-          !ok)
-        return ok;
+      const uint64_t image = uint64_t(item.firstImage) + first.firstImage;
+      if (drawing.images() && image + drawing.images() > info_.imageCount)
+        return wrong(GPGP_ERROR_INVALID_ARGUMENT,
+                     ": its drawing needs %u images from images[%llu] on; imageCount is %u", drawing.images(),
+                     static_cast<unsigned long long>(image), info_.imageCount);
+      const auto slot = bind(drawing, drawing.tables());
+      if (!slot) return slot.error();
+      const uint32_t source = addSource(run.map, run.opacity, static_cast<uint32_t>(image), inside);
+      if (source != kNone || full_) addRun(drawing, run.run, source, *slot);
       continue;
     }
-    beginPlain();
-    const core::Object* asset = nullptr;
-    if (command.kind == List::Kind::text && !(asset = command.asset()))
-      return wrong(GPGP_ERROR_INVALID_HANDLE, ": its glyph set was destroyed");
-    if (space.base != base || space.clip != clip || space.group != group || region_ != placed) {
-      placed = region_;
-      base = space.base, clip = space.clip, group = space.group;
-      source = addSource(compose(map, list.bases()[base]), opacity, item.firstImage, state);
+    wantClips(list, run);
+    const Chain around = run.outermost ? own : Chain{{-kFar, -kFar, kFar, kFar}, 0, false};
+    if (auto ok = resolveClips(list, map, around, false); !ok) return ok;
+    if (run.count == 0) { // all that the clips show
+      const Chain state = first.space.clip && !full_ ? tables_.clipStates[first.space.clip - 1] : around;
+      const uint32_t source = addSource(Map{}, 1, 0, state);
+      shader::ShapeRecord all{};
+      all.box = inside.scissor + shader::vec4(-1, -1, 1, 1);
+      all.frame = {0, 0, 1, 0};
+      if (source != kNone || full_) pathsDropped_ += !addShape(all, source, shader::vec4(1));
+      continue;
     }
-    if (command.kind == List::Kind::text) {
-      const auto glyphs = list.glyphs().subspan(command.first, command.count);
-      if (auto ok = addGlyphs(static_cast<const GlyphSet&>(*asset), glyphs, source); !ok) return ok;
-    } else if (source != kNone || full_) {
-      addShapes(list, list.shapes().subspan(command.first, command.count), source);
-    }
+    if (!list.groups().empty()) resolveGroups(list, run.opacity, false);
+    Last last;
+    last.region = region_;
+    for (const List::Command& command : list.commands().subspan(run.command, run.count))
+      if (auto ok = addCommand(list, command, item, map, run.opacity, around, false, last); !ok) return ok;
   }
   return {};
 }

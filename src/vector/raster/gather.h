@@ -17,7 +17,7 @@ struct ItemAsset {
   const DrawingAsset* drawing = nullptr;
   const GlyphSet* glyphSet = nullptr;
   const List* list = nullptr;
-  bool layered() const; ///< whether it shows a drawing with layers
+  bool layered() const; ///< whether it shows a list or drawing with layers
 };
 
 struct ItemBudgets {
@@ -49,9 +49,10 @@ struct ItemTables {
   std::pmr::vector<shader::PatchItemRecord> patchItems;
   std::pmr::vector<ClipState> clipStates; ///< of the list at hand, as are these
   std::pmr::vector<GroupState> groupStates;
-  std::pmr::vector<const core::Resident*> assets; ///< different ones
-  std::pmr::vector<uint32_t> assetSlots;          ///< theirs
-  std::pmr::vector<shader::SlotRecord> slots;     ///< by asset; the first one is the recording's own
+  std::pmr::vector<uint8_t> clipsWanted, groupsWanted; ///< of lists with layers: 1: in the run at hand
+  std::pmr::vector<const core::Resident*> assets;      ///< different ones
+  std::pmr::vector<uint32_t> assetSlots;               ///< theirs
+  std::pmr::vector<shader::SlotRecord> slots;          ///< by asset; the first one is the recording's own
   std::pmr::vector<uint16_t> assetCells; ///< hash table, open addresses: 1 + index; 0: empty; half full at most
 };
 
@@ -101,9 +102,10 @@ public:
   uint32_t sources = 0, shapes = 0, paints = 0, stops = 0, clips = 0, layers = 0, patchItems = 0; ///< used
 
 private:
+  static constexpr uint32_t kNone = UINT32_MAX;
   using Chain = ItemTables::ClipState;
   core::Result<void> addDrawing(const DrawingAsset& drawing, const Map& map, float opacity, uint32_t firstImage,
-                                const Chain& clip);
+                                const Chain& clip, bool plain = true);
   core::Result<void> planDrawing(const DrawingAsset& drawing, const Map& map, float opacity, const Chain& own);
   void addPatches(const DrawingAsset& drawing, uint32_t first, uint32_t end);
   void addRun(const DrawingAsset& drawing, uint32_t run, uint32_t source, uint32_t slot);
@@ -117,8 +119,18 @@ private:
   void addBlock(const Block& block, uint32_t source);
   core::Result<void> checkInstances(std::span<const GpgpGlyphInstance> glyphs, size_t first, size_t end) const;
   core::Result<void> addList(const List& list, const GpgpCanvasItem& item, const Chain& own);
-  core::Result<void> resolveClips(const List& list, const Map& map, const Chain& own);
-  void resolveGroups(const List& list, float opacity);
+  core::Result<void> addLayeredList(const List& list, const GpgpCanvasItem& item, const Map& map, const Chain& own);
+  void wantClips(const List& list, const PlacedRun& run);
+  /// As sources go: what follows each other in the same space shares one.
+  struct Last {
+    uint32_t source = kNone, base = kNone, clip = kNone, group = kNone;
+    LayerRegion region;
+  };
+  /// `plain`: it is a unit of the planner's.
+  core::Result<void> addCommand(const List& list, const List::Command& command, const GpgpCanvasItem& item,
+                                const Map& map, float opacity, const Chain& own, bool plain, Last& last);
+  core::Result<void> resolveClips(const List& list, const Map& map, const Chain& own, bool all);
+  void resolveGroups(const List& list, float opacity, bool all);
   void addShapes(const List& list, std::span<const List::Shape> from, uint32_t source);
   bool addShape(const shader::ShapeRecord& shape, uint32_t source, const shader::vec4& color);
   uint32_t addSource(const Map& map, float opacity, uint32_t firstImage, const Chain& clip);
@@ -126,7 +138,6 @@ private:
   core::Result<uint32_t> bind(const core::Resident& asset, const shader::SlotRecord& tables);
   [[gnu::format(printf, 3, 4)]] core::Error wrong(GpgpResult code, const char* format, ...) const;
 
-  static constexpr uint32_t kNone = UINT32_MAX;
   BoundBuffer buffers_[shader::kMaxBuffers] = {};
   uint32_t bufferCount_ = 0;
   const bool patched_; ///< drawings that have patches are drawn by them

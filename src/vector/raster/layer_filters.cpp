@@ -52,8 +52,25 @@ LayerPlanner::Picture LayerPlanner::as(const Picture& from, bool srgb) {
   return to;
 }
 
-/// False: there is nothing to see.
 bool LayerPlanner::filter(const Around& a, const LayerNode& node, uint32_t index, const PixelBox& shown,
+                          Picture& result) {
+  const Box content = a.bounds.contents[index];
+  const Box region{node.filterRegion[0], node.filterRegion[1], node.filterRegion[2], node.filterRegion[3]};
+  float inverse[6];
+  const bool whole = invert(node.filterTransform, inverse) && [&] {
+    const Box own = mapped(content, inverse), both = meet(own, region);
+    return both.left == own.left && both.top == own.top && both.right == own.right && both.bottom == own.bottom;
+  }();
+  const std::function<Picture(const PixelBox&)> paint = [&](const PixelBox& box) {
+    const Picture made = this->region(box);
+    sequence(a, node.content, made, true, 1);
+    return made;
+  };
+  return filter(a, node, {pixels(a.map, content), whole, paint}, shown, result);
+}
+
+/// False: there is nothing to see.
+bool LayerPlanner::filter(const Around& a, const LayerNode& node, const FilterInput& given, const PixelBox& shown,
                           Picture& result) {
   const auto steps = a.plan.stepsOf(node);
   if (steps.empty()) return false;
@@ -127,20 +144,12 @@ bool LayerPlanner::filter(const Around& a, const LayerNode& node, uint32_t index
     default: ask(s.input, need); break;
     }
   }
-  const Box content = a.bounds.contents[index];
   const float* cut = node.filterRegion;
-  const Box filterBox{cut[0], cut[1], cut[2], cut[3]};
-  source = meet(source, meet(pixels(a.map, content), pixels(space, filterBox)));
+  source = meet(source, meet(given.box, pixels(space, Box{cut[0], cut[1], cut[2], cut[3]})));
   Picture graphic{{}, false, srgb_, 0, 0, 0}, alpha = graphic;
   if (!source.empty()) {
-    graphic = region(source);
-    sequence(a, node.content, graphic, true, 1);
-    float inverse[6];
-    const bool whole = invert(node.filterTransform, inverse) && [&] {
-      const Box own = mapped(content, inverse), both = meet(own, filterBox);
-      return both.left == own.left && both.top == own.top && both.right == own.right && both.bottom == own.bottom;
-    }();
-    if (!whole) {
+    graphic = given.paint(source);
+    if (!given.whole) {
       const Picture all = graphic;
       graphic = picture(source, srgb_);
       OperationRecord& o = operation(shader::kOperationCopy, kColors, graphic);
@@ -278,7 +287,7 @@ LayerPlanner::Picture LayerPlanner::step(const Around& a, const LayerNode& node,
     break;
   case GPGP_FILTER_COMPONENT_TRANSFER:
     o.kind = shader::kOperationTransfer;
-    o.values[0] = table(a.drawing.tableOf(s.firstEntry));
+    o.values[0] = table(a.drawing->tableOf(s.firstEntry));
     break;
   case GPGP_FILTER_BLEND:
     o.kind = shader::kOperationBlend;
@@ -297,7 +306,7 @@ LayerPlanner::Picture LayerPlanner::step(const Around& a, const LayerNode& node,
     o.values[0] = {v[0], v[1], v[2], v[3]};
     o.values[1] = {v[4], v[5], v[6], 0};
     o.values[2] = inside;
-    o.values[3] = table(a.drawing.tableOf(s.firstEntry));
+    o.values[3] = table(a.drawing->tableOf(s.firstEntry));
     o.values[4] = {distanceOf(v[7]), distanceOf(v[8]), 0, 0};
     break;
   case GPGP_FILTER_DISPLACEMENT_MAP:
@@ -326,7 +335,7 @@ LayerPlanner::Picture LayerPlanner::step(const Around& a, const LayerNode& node,
       o.values[1][2 + k] = std::floor(s.region[k] * frequency[k]) + 4096 + o.values[1][k];
     }
     o.values[0] = {frequency[0], frequency[1], v[2], v[4]};
-    o.values[2] = table(a.drawing.latticeOf(static_cast<uint32_t>(&s - a.plan.steps.data())));
+    o.values[2] = table(a.drawing->latticeOf(static_cast<uint32_t>(&s - a.plan.steps.data())));
     break;
   }
   case GPGP_FILTER_DIFFUSE_LIGHTING:

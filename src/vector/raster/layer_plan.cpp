@@ -9,27 +9,17 @@ using shader::OperationRecord;
 constexpr uint32_t kMostSide = 16384;           // of the raster
 constexpr uint32_t kMostDispatched = 65535 * 8; // pixels in a row, in workgroups of 8
 
-/// What has been composited onto a picture: paths that meet none of it may still be rasterised there.
-class Composited {
-public:
-  explicit Composited(bool all) : all_(all) {}
-  bool meets(const PixelBox& box) const {
-    return all_ || std::any_of(boxes_.begin(), boxes_.begin() + count_,
-                               [&](const PixelBox& other) { return !meet(box, other).empty(); });
-  }
-  void add(const PixelBox& box) {
-    PixelBox& place = boxes_[std::min(count_, uint32_t(boxes_.size() - 1))];
-    place = count_ < boxes_.size() ? box : join(place, box);
-    count_ = std::min(count_ + 1, uint32_t(boxes_.size()));
-  }
-
-private:
-  std::array<PixelBox, 32> boxes_;
-  uint32_t count_ = 0;
-  const bool all_;
-};
-
 } // namespace
+
+bool Composited::meets(const PixelBox& box) const {
+  return all_ || std::any_of(boxes_.begin(), boxes_.begin() + count_,
+                             [&](const PixelBox& other) { return !meet(box, other).empty(); });
+}
+void Composited::add(const PixelBox& box) {
+  PixelBox& place = boxes_[std::min(count_, uint32_t(boxes_.size() - 1))];
+  place = count_ < boxes_.size() ? box : join(place, box);
+  count_ = std::min(count_ + 1, uint32_t(boxes_.size()));
+}
 
 LayerPlanner::LayerPlanner(LayerTables& tables, const LayerBudgets& budgets, const std::array<uint32_t, 6>& passes,
                            uint32_t maxBins, const GpgpCanvasInfo& info)
@@ -99,10 +89,11 @@ LayerPlanner::Picture LayerPlanner::picture(const PixelBox& box, bool srgb) {
   return made;
 }
 
-void LayerPlanner::place(uint32_t run, float opacity, const Picture& where, const Map& map) {
+void LayerPlanner::place(uint32_t run, float opacity, const Picture& where, const Map& map, uint32_t command,
+                         uint32_t count) {
   if (state_.runs < tables_.runs.size())
     tables_.runs[state_.runs] = {
-        unit_, run, opacity, {where.box, static_cast<int>(where.x), static_cast<int>(where.y)}, map};
+        unit_, run, opacity, {where.box, static_cast<int>(where.x), static_cast<int>(where.y)}, map, command, count};
   ++state_.runs;
 }
 
@@ -150,7 +141,7 @@ Result<void> LayerPlanner::addLayered(const DrawingAsset& drawing, uint32_t slot
     if (map.projective() && (node.filtered || node.mask))
       return makeError(GPGP_ERROR_UNSUPPORTED, "a drawing with filters or masks is not drawn in perspective");
   layered_ = true;
-  const Around around{drawing, plan, drawing.layerBounds(), map, slot};
+  const Around around{&drawing, plan, drawing.layerBounds(), map, slot};
   const auto side = [](float v, bool up) {
     const double at = std::clamp(static_cast<double>(v), double(-kFar), double(kFar));
     return static_cast<int>(up ? std::ceil(at) : std::floor(at));

@@ -11,6 +11,8 @@
 #include "vector/raster/drawing_asset.h"
 #include "vector/raster/place.h"
 
+#include <functional>
+
 namespace gpgp::vector {
 
 struct LayerBudgets {
@@ -30,13 +32,30 @@ struct LayerRegion {
   int x = 0, y = 0;
   bool operator==(const LayerRegion&) const = default;
 };
-/// A run of a drawing in a region.
+/// What is rasterised in a region: a run of a drawing, or something of a list with layers.
 struct PlacedRun {
   uint32_t unit; ///< which of the things that a recording shows
-  uint32_t run;
+  uint32_t run;  ///< of a drawing
   float opacity;
   LayerRegion region;
-  Map map; ///< drawing space to the canvas
+  Map map;                                 ///< drawing space to the canvas
+  static constexpr uint32_t kNone = ~0u;   ///< no command of a list
+  uint32_t command = kNone, count = kNone; ///< count: of commands; 0: all that the clips around the command show;
+                                           ///< kNone: a run of the drawing that the command adds
+  bool outermost = true;                   ///< the item's scissor counts
+};
+
+/// What has been composited onto a picture: paths that meet none of it may still be rasterised there.
+class Composited {
+public:
+  explicit Composited(bool all) : all_(all) {}
+  bool meets(const PixelBox& box) const;
+  void add(const PixelBox& box);
+
+private:
+  std::array<PixelBox, 32> boxes_;
+  uint32_t count_ = 0;
+  const bool all_;
 };
 
 /// Room for what one recording has, made once.
@@ -62,6 +81,7 @@ struct LayerTables {
 
 /// Lists what a recording's units do, one after another. A unit is a thing that the raster draws: an item, or one
 /// drawing of a list.
+class ListLayers;
 class LayerPlanner {
 public:
   /// `passes`: by OPERATIONS (operate.comp).
@@ -83,6 +103,7 @@ public:
   uint32_t units() const { return keptUnits_; } ///< those from here on find no room
   uint32_t width() const { return kept_.width; }
   uint32_t height() const { return kept_.height; }
+  const PixelBox& canvas() const { return canvas_; }
   std::span<const PlacedRun> runs() const { return std::span(tables_.runs).first(kept_.runs); }
   std::span<const shader::OperationRecord> operations() const {
     return std::span(tables_.operations).first(kept_.operations);
@@ -93,6 +114,7 @@ public:
   uint32_t operationsNeeded() const { return layered_ ? state_.operations : 0; }
 
 private:
+  friend ListLayers;
   using Picture = LayerTables::Picture;
   struct State {
     uint32_t width = 0, height = 0;      ///< of the raster
@@ -102,8 +124,8 @@ private:
     uint64_t pixels = 0, mostPixels = 0; ///< of pictures behind the raster: in use, and at most so far
     uint32_t operations = 1, runs = 0;
   };
-  struct Around { ///< what a part of a drawing is planned in
-    const DrawingAsset& drawing;
+  struct Around {                ///< what a part of a drawing is planned in
+    const DrawingAsset* drawing; ///< null: a layer of a list, whose filters have no tables
     const LayerPlan& plan;
     const LayerBounds& bounds;
     const Map& map;
@@ -113,14 +135,23 @@ private:
   void endUnit(bool layered);
   Picture region(const PixelBox& box);
   Picture picture(const PixelBox& box, bool srgb);
-  void place(uint32_t run, float opacity, const Picture& where, const Map& map);
+  void place(uint32_t run, float opacity, const Picture& where, const Map& map, uint32_t command = PlacedRun::kNone,
+             uint32_t count = PlacedRun::kNone);
   shader::OperationRecord& operation(uint32_t kind, uint32_t pass, const Picture& result);
   shader::OperationRecord& composite(const Picture& onto, const Picture& from, float opacity, uint32_t blend);
 
   PixelBox pixels(const Map& map, const Box& box) const;
   void sequence(const Around& a, const LayerSequence& s, const Picture& onto, bool clean, float opacity);
   void layer(const Around& a, uint32_t node, const Picture& onto, float opacity);
+  /// What a filter works on: where it has anything, whether the filter's region holds all of that, and its picture,
+  /// which `paint` makes in a box of pixels.
+  struct FilterInput {
+    PixelBox box;
+    bool whole;
+    const std::function<Picture(const PixelBox&)>& paint;
+  };
   bool filter(const Around& a, const LayerNode& node, uint32_t index, const PixelBox& shown, Picture& result);
+  bool filter(const Around& a, const LayerNode& node, const FilterInput& given, const PixelBox& shown, Picture& result);
   Picture step(const Around& a, const LayerNode& node, uint32_t index, const Map& space, const PixelBox& need,
                const Picture& first, const Picture& second);
   Picture blur(const Picture& from, double deviationX, double deviationY, const Map& space, const PixelBox& need,

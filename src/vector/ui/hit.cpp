@@ -149,6 +149,45 @@ bool clipsShow(const List& list, uint32_t clip, const Map& map, double x, double
   return true;
 }
 
+/// The layers that a command lies in: their clips and boxes count; masks, filters and opacities do not.
+struct PicturesAround {
+  std::array<uint32_t, GPGP_MAX_LAYER_DEPTH> layers; ///< their commands
+  uint32_t count = 0;
+  bool masked = false; ///< it is part of a mask
+  bool shows(const List& list, const Map& map, double x, double y) const {
+    for (uint32_t k = 0; k < count; ++k) {
+      const List::Command& command = list.commands()[layers[k]];
+      const List::Layer& layer = list.layers()[command.first];
+      if (!clipsShow(list, command.space.clip, map, x, y)) return false;
+      if (!layer.bounded) continue;
+      Point at{};
+      const Map whole = compose(compose(map, list.bases()[command.space.base]), command.space.map());
+      const float* b = layer.bounds;
+      if (!unmap(whole, x, y, at) || !inBox({b[0], b[1], b[2], b[3]}, at)) return false;
+    }
+    return true;
+  }
+};
+PicturesAround pictureAround(const List& list, size_t index) {
+  PicturesAround around;
+  if (list.layers().empty() && !list.masks()) return around;
+  const auto commands = list.commands();
+  for (uint32_t i = 0; i < index;) {
+    const List::Command& c = commands[i];
+    const bool picture = c.kind == List::Kind::layer || c.kind == List::Kind::mask;
+    if (picture && i + c.count < index) {
+      i += c.count + 1; // it ends before
+      continue;
+    }
+    if (picture) {
+      around.masked = around.masked || c.kind == List::Kind::mask;
+      if (c.kind == List::Kind::layer) around.layers[around.count++] = i;
+    }
+    ++i;
+  }
+  return around;
+}
+
 Result<bool> hitList(const List& list, const Map& map, double x, double y, GpgpHit& hit) {
   if (list.depth())
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".list: %u of its pushes are not popped", list.depth());
@@ -158,7 +197,11 @@ Result<bool> hitList(const List& list, const Map& map, double x, double y, GpgpH
   for (size_t i = list.commands().size(); i > 0; --i) {
     const List::Command& command = list.commands()[i - 1];
     const List::Space& space = command.space;
+    if (command.kind == List::Kind::layer || command.kind == List::Kind::mask) continue;
+    const auto around = pictureAround(list, i - 1);
+    if (around.masked) continue;
     if (space.clip != clip) shown = clipsShow(list, clip = space.clip, map, x, y);
+    if (!around.shows(list, map, x, y)) continue;
     if (space.base != base) mapped = unmap(compose(map, list.bases()[base = space.base]), x, y, p);
     if (!shown || !mapped || command.id == GPGP_ID_NOT_HIT) continue;
     hit.entry = command.firstEntry;

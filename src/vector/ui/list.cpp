@@ -58,7 +58,8 @@ ShapeRecord lineBox(float x0, float y0, float x1, float y1, float width, GpgpCap
 
 List::List(core::Context& owner, const char* name)
     : Object(owner, core::Kind::list, name), stack_(&owner.host()), bases_(&owner.host()), clips_(&owner.host()),
-      groups_(&owner.host()), commands_(&owner.host()), shapes_(&owner.host()), glyphs_(&owner.host()),
+      groups_(&owner.host()), layers_(&owner.host()), masks_(&owner.host()), plan_(&owner.host()),
+      bounds_(&owner.host()), commands_(&owner.host()), shapes_(&owner.host()), glyphs_(&owner.host()),
       paints_(&owner.host()) {}
 
 Result<core::Unique<List>> List::create(core::Context& context, const GpgpListCreateInfo& info) {
@@ -77,12 +78,18 @@ void List::reset() {
   bases_.resize(1);
   clips_.clear();
   groups_.clear();
+  layers_.clear();
+  masks_.clear();
+  plan_.nodes.clear();
+  plan_.steps.clear();
+  bounds_.steps.clear();
   commands_.clear();
   shapes_.clear();
   glyphs_.clear();
   paints_.paints.clear();
   paints_.stops.clear();
   images_ = entries_ = 0;
+  closed_ = 0;
 }
 
 Result<void> List::checkDepth() const {
@@ -169,9 +176,115 @@ Result<void> List::pushGroup(float opacity) {
   return {};
 }
 
+/// The clips, groups and opacities around it are the picture's; in it, there are none.
+void List::beginPicture(Kind what, uint32_t index) {
+  Command& command = addCommand(what);
+  command.first = index;
+  stack_.push_back(state_);
+  state_ = {{state_.space.base, 0, 0, state_.space.scale, state_.space.x, state_.space.y},
+            1,
+            static_cast<uint32_t>(commands_.size()),
+            state_.pictures + 1};
+}
+
+Result<void> List::pushLayer(const GpgpListLayer& layer) {
+  if (auto ok = checkOpacity(layer.opacity); !ok) return ok;
+  if (state_.pictures == GPGP_MAX_LAYER_DEPTH)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "more than %d layers and masks in each other (GPGP_MAX_LAYER_DEPTH)",
+                     GPGP_MAX_LAYER_DEPTH);
+  if (state_.space.group)
+    return makeError(GPGP_ERROR_UNSUPPORTED, "a layer inside a group; push a layer in the group's place");
+  GpgpLayer checked{};
+  checked.blend = layer.blend;
+  checked.maskKind = layer.maskKind;
+  checked.maskEncoding = layer.maskEncoding;
+  checked.filter = layer.filter;
+  checked.filterCount = layer.filterCount;
+  constexpr float kFar = 4 * kMaxCoordinate;
+  const float all[4] = {-kFar, -kFar, kFar, kFar}, same[6] = {1, 0, 0, 1, 0, 0};
+  std::copy_n(all, 4, checked.filterRegion);
+  std::copy_n(same, 6, checked.filterTransform);
+  if (auto ok = checkLayer(checked, "layer", 0, 0); !ok) return ok;
+  for (uint32_t i = 0; i < layer.filterCount; ++i)
+    if (const int32_t what = layer.filter[i].kind; what == GPGP_FILTER_COMPONENT_TRANSFER ||
+                                                   what == GPGP_FILTER_CONVOLVE_MATRIX ||
+                                                   what == GPGP_FILTER_TURBULENCE || what == GPGP_FILTER_GROUP)
+      return makeError(GPGP_ERROR_UNSUPPORTED, "layer.filter[%u].kind is %d, which layers of lists do not know", i,
+                       what);
+  if (plan_.steps.size() + layer.filterCount > kMaxNestedSteps)
+    return makeError(GPGP_ERROR_UNSUPPORTED, "the filters of a list have more than %u steps", kMaxNestedSteps);
+  if (layer.mask > masks_.size() || (layer.mask && !commands_[masks_[layer.mask - 1]].id))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "layer.mask is %u: no mask that was popped", layer.mask);
+  if (layer.mask && layer.maskKind != GPGP_MASK_LUMINANCE && layer.maskKind != GPGP_MASK_ALPHA)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "layer.maskKind is %d", layer.maskKind);
+  if (layer.mask && layer.maskEncoding != GPGP_IMAGE_LINEAR && layer.maskEncoding != GPGP_IMAGE_SRGB)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "layer.maskEncoding is %d", layer.maskEncoding);
+  if (layer.maskInverted && layer.maskKind != GPGP_MASK_ALPHA)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "layer.maskInverted is for GPGP_MASK_ALPHA");
+  if (!within(layer.bounds, 4, -kMaxCoordinate, kMaxCoordinate) || layer.bounds[2] < layer.bounds[0] ||
+      layer.bounds[3] < layer.bounds[1])
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "layer.bounds is no box within 1e7");
+
+  makeRoom(layers_);
+  makeRoom(commands_);
+  makeRoom(stack_);
+  makeRoom(plan_.nodes);
+  makeRoom(plan_.steps, layer.filterCount);
+  makeRoom(bounds_.steps, layer.filterCount);
+  LayerNode node{};
+  node.blend = layer.blend;
+  node.opacity = layer.opacity * state_.opacity;
+  node.mask = layer.mask;
+  node.maskKind = layer.maskKind;
+  node.maskEncoding = layer.maskEncoding;
+  node.filtered = layer.filter != nullptr;
+  node.firstStep = static_cast<uint32_t>(plan_.steps.size());
+  node.stepCount = layer.filterCount;
+  std::copy_n(all, 4, node.filterRegion);
+  std::copy_n(same, 6, node.filterTransform);
+  for (uint32_t i = 0; i < layer.filterCount; ++i) {
+    const GpgpFilterStep& s = layer.filter[i];
+    LayerStep step{s.kind, s.mode, s.input, s.input2, s.encoding, {}, {}, 0, 0, 0};
+    std::copy_n(s.region, 4, step.region);
+    std::copy_n(s.values, 20, step.values);
+    plan_.steps.push_back(step);
+    bounds_.steps.push_back({s.region[0], s.region[1], s.region[2], s.region[3]});
+  }
+  plan_.nodes.push_back(node);
+  Layer made{static_cast<uint32_t>(plan_.nodes.size() - 1),
+             layer.mask ? masks_[layer.mask - 1] + 1 : 0,
+             layer.maskInverted != VK_FALSE,
+             layer.backdrop != VK_FALSE,
+             layer.bounds[0] != 0 || layer.bounds[1] != 0 || layer.bounds[2] != 0 || layer.bounds[3] != 0,
+             {}};
+  std::copy_n(layer.bounds, 4, made.bounds);
+  layers_.push_back(made);
+  beginPicture(Kind::layer, static_cast<uint32_t>(layers_.size() - 1));
+  return {};
+}
+
+Result<uint32_t> List::pushMask() {
+  if (auto ok = checkDepth(); !ok) return ok.error();
+  if (state_.pictures == GPGP_MAX_LAYER_DEPTH)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "more than %d layers and masks in each other (GPGP_MAX_LAYER_DEPTH)",
+                     GPGP_MAX_LAYER_DEPTH);
+  makeRoom(masks_);
+  makeRoom(commands_);
+  masks_.push_back(static_cast<uint32_t>(commands_.size()));
+  beginPicture(Kind::mask, static_cast<uint32_t>(masks_.size() - 1));
+  return static_cast<uint32_t>(masks_.size());
+}
+
 Result<void> List::pop() {
   if (stack_.empty()) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "all that was pushed has been popped");
-  state_ = stack_.back();
+  const State outer = stack_.back();
+  if (state_.open && state_.open != outer.open) { // a layer or a mask
+    Command& command = commands_[state_.open - 1];
+    command.count = static_cast<uint32_t>(commands_.size()) - state_.open;
+    if (command.kind == Kind::mask) command.id = 1; // it is whole
+    closed_ = commands_.size();
+  }
+  state_ = outer;
   stack_.pop_back();
   return {};
 }
@@ -346,7 +459,7 @@ Result<void> List::addShapes(std::span<const GpgpListShape> shapes) {
         return makeError(ok.error().code, "shapes[%zu]%s%s", i, ok.error().text[0] == '.' ? "" : ": ", ok.error().text);
       }
     const bool extends =
-        !commands_.empty() && commands_.back().kind == Kind::shapes && commands_.back().space == state_.space;
+        commands_.size() > closed_ && commands_.back().kind == Kind::shapes && commands_.back().space == state_.space;
     Command& command = extends ? commands_.back() : addCommand(Kind::shapes);
     if (!extends) command.first = static_cast<uint32_t>(before);
     command.count += static_cast<uint32_t>(shapes.size());

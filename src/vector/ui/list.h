@@ -5,6 +5,7 @@
 #pragma once
 #include "core/context.h"
 #include "vector/patch/drawing.h"
+#include "vector/patch/layers.h"
 #include "vector/raster/place.h"
 
 #include <gpgp/ui.h>
@@ -21,6 +22,8 @@ public:
   core::Result<void> pushClip(const float* box, const float* radii);
   core::Result<void> pushOpacity(float opacity);
   core::Result<void> pushGroup(float opacity);
+  core::Result<void> pushLayer(const GpgpListLayer& layer);
+  core::Result<uint32_t> pushMask(); ///< its number
   core::Result<void> pop();
   core::Result<void> addShapes(std::span<const GpgpListShape> shapes);
   core::Result<void> addTriangles(const GpgpListTriangles& triangles);
@@ -49,13 +52,21 @@ public:
   };
   /// A triangle's record with its colours as a canvas mixes them.
   static shader::ShapeRecord toRecord(const shader::ShapeRecord& triangle, bool blendSrgb);
-  enum class Kind : uint32_t { shapes, triangles, text, drawing };
+  /// What happens with the picture of the commands that follow its own.
+  struct Layer {
+    uint32_t node; ///< of plan()
+    uint32_t mask; ///< 1 + the index of the command that begins it; 0: none
+    bool inverted, backdrop, bounded;
+    float bounds[4];
+  };
+  enum class Kind : uint32_t { shapes, triangles, text, drawing, layer, mask };
   struct Command {
     Kind kind;
-    uint32_t first = 0, count = 0; ///< of shapes() (triangles, too) or glyphs()
-    uint32_t firstEntry = 0;       ///< as GpgpHit::entry counts
+    /// Of shapes() (triangles, too) or glyphs(). Layer: of layers(); layer, mask: how many commands are its own.
+    uint32_t first = 0, count = 0;
+    uint32_t firstEntry = 0; ///< as GpgpHit::entry counts
     Space space;
-    float opacity = 1;       ///< of a drawing; the others have it in their colours
+    float opacity = 1;       ///< of a drawing or layer; the others have it in their colours
     uint32_t firstImage = 0; ///< of a drawing
     const core::Slot* slot = nullptr;
     uint32_t generation = 0;
@@ -68,6 +79,10 @@ public:
   std::span<const Clip> clips() const { return clips_; }
   std::span<const Group> groups() const { return groups_; }
   std::span<const Command> commands() const { return commands_; }
+  std::span<const Layer> layers() const { return layers_; }
+  uint32_t masks() const { return static_cast<uint32_t>(masks_.size()); }
+  const LayerPlan& plan() const { return plan_; }       ///< nodes and steps of layers alone
+  const LayerBounds& bounds() const { return bounds_; } ///< of steps alone
   std::span<const Shape> shapes() const { return shapes_; }
   std::span<const GpgpGlyphInstance> glyphs() const { return glyphs_; }
   const Drawing& paints() const { return paints_; } ///< paints and stops alone
@@ -76,7 +91,9 @@ public:
 private:
   struct State {
     Space space;
-    float opacity = 1; ///< of each thing within the group
+    float opacity = 1;     ///< of each thing within the group
+    uint32_t open = 0;     ///< 1 + the command of the innermost layer or mask; 0: none
+    uint32_t pictures = 0; ///< layers and masks in each other
   };
   core::Result<void> checkDepth() const;
   core::Result<void> checkOpacity(float opacity) const;
@@ -84,17 +101,23 @@ private:
   core::Result<uint32_t> addPaint(const GpgpListShape& shape);
   core::Result<uint32_t> addImagePaint(const GpgpListImage& image, const shader::vec4& box);
   Command& addCommand(Kind what);
+  void beginPicture(Kind what, uint32_t index);
 
   State state_;
   std::pmr::vector<State> stack_;
   std::pmr::vector<Map> bases_;
   std::pmr::vector<Clip> clips_;
   std::pmr::vector<Group> groups_;
+  std::pmr::vector<Layer> layers_;
+  std::pmr::vector<uint32_t> masks_; ///< their commands
+  LayerPlan plan_;
+  LayerBounds bounds_;
   std::pmr::vector<Command> commands_;
   std::pmr::vector<Shape> shapes_;
   std::pmr::vector<GpgpGlyphInstance> glyphs_;
   Drawing paints_;
   uint32_t images_ = 0, entries_ = 0;
+  size_t closed_ = 0; ///< commands up to the last layer or mask that was popped
 };
 
 } // namespace gpgp::vector

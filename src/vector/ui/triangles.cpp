@@ -1,6 +1,6 @@
 // Triangles of a list (shaders/vector/shared/triangle.h): checked, placed, and as a canvas takes them.
-#include "vector/shared/triangle.h"
 #include "vector/shared/color.h"
+#include "vector/shared/triangle.h"
 #include "vector/ui/list.h"
 
 #include <algorithm>
@@ -91,8 +91,7 @@ Result<void> List::addTriangles(const GpgpListTriangles& from) {
 
   const size_t before = shapes_.size(), paints = paints_.paints.size();
   const auto reserve = [](auto& values, size_t more) {
-    if (values.capacity() - values.size() < more)
-      values.reserve(std::max(values.size() + more, 2 * values.capacity()));
+    if (values.capacity() - values.size() < more) values.reserve(std::max(values.size() + more, 2 * values.capacity()));
   };
   reserve(shapes_, corners / 3);
   if (textured) reserve(paints_.paints, corners / 3);
