@@ -10,7 +10,7 @@
 
 namespace gpgp::core {
 
-constexpr uint32_t kMaxResources = 36;
+constexpr uint32_t kMaxResources = 41;
 constexpr uint32_t kMaxGroupCounts = 16;
 constexpr uint32_t kMaxConditions = 52;
 constexpr uint32_t kMaxTargets = 16;
