@@ -87,6 +87,10 @@ typedef struct GpgpVisibilityRecorderCreateInfo {
    *  of 8 x 8 pixels. 0: 4 for each candidate and 4 for each pixel of each camera, but no more than the device's
    *  maxStorageBufferRange holds. Scratch: 8 bytes each; see maxTriangles for 4 more. */
   uint32_t maxPairs;
+  /** Room for triangles on the screen of draws that are alpha-tested or see-through; at most maxTriangles; 0: none.
+   *  Those beyond it count as visible and hide nothing, and the report says BUDGET_EXCEEDED. Scratch: 4 bytes each.
+   * Each takes the room of two candidates. */
+  uint32_t maxNonOpaque;
 } GpgpVisibilityRecorderCreateInfo;
 #define GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT                                                                      \
   GPGP_INIT(GpgpVisibilityRecorderCreateInfo, GPGP_STRUCTURE_VISIBILITY_RECORDER_CREATE_INFO)
@@ -138,6 +142,18 @@ typedef struct GpgpVisibilityDraw {
  *  mesh that is modelled counter-clockwise shows its back faces only. An engine whose mirrored draws turn their faces
  *  inside out sets the flag for these draws. */
 #define GPGP_DRAW_CLOCKWISE 2u
+/** Triangles of the draw can be visible but hide nothing: glass, particles, both levels of detail of a cross-fade. Each
+ *  is visible where nothing that hides lies in front of it. Needs maxNonOpaque. */
+#define GPGP_DRAW_SEE_THROUGH 4u
+/** The draw is not sampled and is in no list by draw. Its triangles still count for maxTriangles. */
+#define GPGP_DRAW_DISABLED 8u
+/** The draw is alpha-tested by GpgpVisibilityInfo::alphaTests[i], i from 0 to 15: its triangles are there, can be
+ *  visible and hide something, only where the texture's alpha reaches the cutoff. With an i out of range, the draw's
+ *  triangles are skipped and counted. Needs maxNonOpaque. */
+#define GPGP_DRAW_ALPHA_TEST(i) (((i) + 1u) << 8)
+/** Layers that the draw is in, bits of a mask of 16: cameras with a layerMask sample it only if they have a bit in
+ *  common. 0: every camera samples it. */
+#define GPGP_DRAW_LAYERS(mask) ((uint32_t)(mask) << 16)
 
 typedef int32_t GpgpSamplingMethod;
 enum {
@@ -184,6 +200,7 @@ typedef struct GpgpCamera {
   float viewProjection[16]; /**< world space minus origin, to clip space; column-major */
   VkBool32 reversedDepth;   /**< VK_TRUE: depth 1 is near, 0 is far */
   double origin[3];         /**< world space, each below 1e30 in magnitude; 0, 0, 0: the world's origin */
+  uint32_t layerMask;       /**< 16 bits: the layers that the camera sees (GPGP_DRAW_LAYERS); 0: all */
 } GpgpCamera;
 
 /** A view cell: a region that the viewer may be in until the next recording. The union of what several cameras in the
@@ -266,6 +283,15 @@ typedef struct GpgpTriangleSize {
   float width, height; /**< of its bounding box, pixels */
 } GpgpTriangleSize;
 
+/** The texture of an alpha test. The engine makes its contents visible to sampling in compute shaders. */
+typedef struct GpgpAlphaTest {
+  VkImageView view;     /**< 2D; its alpha is read, so a view of a format without one maps a component to it */
+  VkSampler sampler;    /**< filters and address modes are used; anisotropy and mip bias are not */
+  VkImageLayout layout; /**< current layout: SHADER_READ_ONLY_OPTIMAL, GENERAL, ... */
+  float cutoff;         /**< The triangle is there where alpha is at least this. */
+  float level;          /**< mip level that is sampled, from 0 to 32, the same at every distance */
+} GpgpAlphaTest;
+
 /** One recording: what is sampled, how, and where the results go. Buffers marked "out" are written, all others are only
  *  read, except clusters. An optional buffer is left out by leaving it zero. */
 typedef struct GpgpVisibilityInfo {
@@ -312,8 +338,18 @@ typedef struct GpgpVisibilityInfo {
   VkFormat positionFormat;
   uint32_t positionOffset; /**< bytes from the start of a vertex to its position; a multiple of a component's size */
   uint32_t positionStride; /**< bytes, a multiple of a component's size; 0: three components */
-  GpgpBuffer indices;      /**< STORAGE usage; the size is a multiple of 4, for UINT16 too */
-  VkIndexType indexType;   /**< UINT16 or UINT32 */
+  /** Textures of alpha-tested draws (GPGP_DRAW_ALPHA_TEST), at most 16. The sampler of a device filters with its own
+   *  precision, so where alpha is near the cutoff, devices differ. */
+  const GpgpAlphaTest* alphaTests;
+  uint32_t alphaTestCount; /**< above 0: the recorder has maxNonOpaque */
+  /** With alphaTests: texture coordinates by vertex, like positions; STORAGE usage; the size is a multiple of 4.
+   * Outside the range, and where not finite or from 2^100 on, they are 0. */
+  GpgpBuffer textureCoordinates;
+  VkFormat textureCoordinateFormat; /**< R32G32_SFLOAT, R16G16_SFLOAT or R16G16_UNORM; UNDEFINED: R32G32_SFLOAT */
+  uint32_t textureCoordinateOffset; /**< bytes from the start of a vertex; a multiple of a component's size */
+  uint32_t textureCoordinateStride; /**< bytes, a multiple of a component's size; 0: two components */
+  GpgpBuffer indices;               /**< STORAGE usage; the size is a multiple of 4, for UINT16 too */
+  VkIndexType indexType;            /**< UINT16 or UINT32 */
   /** Optional, not together with commands; STORAGE usage. 48 bytes for each cluster: 64 consecutive triangles of a
    *  mesh; the last cluster of a mesh may have fewer. The recording computes the bounds and normal cones of all
    *  clusters and stores them here, if drawCount is above 0 (without draws it has no positions). It then skips
@@ -347,9 +383,13 @@ typedef struct GpgpVisibilityInfo {
   /** Out, optional: uint32_t per triangle, the number of samples that show it. Exact: pixel centres. Reference: at most
    *  2^32 - 1. With a resolution below 1: samples of the smaller picture. */
   GpgpBuffer pixelCounts;
-  /** Out, optional: uint32_t numbers of the visible triangles, without gaps, in no particular order. The buffer's size
-   *  is the budget. */
+  /** Out, optional: uint32_t numbers of the visible triangles, ascending. The buffer's size is the budget. */
   GpgpBuffer visibleList;
+  /** Out, optional, with history: uint32_t[4], then uint32_t numbers of triangles: those that have appeared since the
+   *  history's previous recording, ascending, and behind them those that have disappeared, ascending. [0] and [1] are
+   *  how many there are of both, whether or not the buffer holds them; [2] and [3] are 0. The buffer's size is the
+   *  budget. STORAGE usage */
+  GpgpBuffer changedList;
   /** Out, optional: uint32_t[4]. [0] is the number of visible triangles, whether or not the list holds them. [1] to [3]
    *  are a VkDispatchIndirectCommand with a workgroup for each 64 listed triangles, in rows of 65535:
    *  workgroup y * 65535 + x. The last row may extend beyond the list. With drawCommands there is a fifth word: the
@@ -442,6 +482,9 @@ typedef struct GpgpVisibilityReport {
   uint32_t skippedTriangles; /**< an index, triangle number or origin out of range; a coordinate that is not finite or
                                   reaches 2^100 */
   uint32_t skippedDraws;     /**< of a mesh that is not in the geometry set; instances beyond `draws` */
+  /** Triangles on the screen of alpha-tested and see-through draws: maxNonOpaque of at least this is needed. */
+  uint32_t neededNonOpaque;
+  uint32_t changed;          /**< numbers written to changedList; less than appeared + disappeared: it is too small */
   uint32_t neededCandidates; /**< exact: needed maxCandidates; a lower bound if there was too little room */
   uint32_t neededPairs;      /**< exact: needed maxPairs; a lower bound if there was too little room */
   uint32_t maxTriangles;     /**< the recorder's budget: as given at its creation, or the default */
@@ -473,6 +516,8 @@ typedef struct GpgpVisibilityReport {
  *  - more draws than maxDraws or drawCommands hold: see neededDraws;
  *  - more visible triangles than visibleList holds: see visible;
  *  - more triangles than drawIndices or drawTriangles hold: see neededDrawTriangles;
+ *  - more changes than changedList holds: see appeared and disappeared;
+ *  - more triangles of alpha-tested and see-through draws than maxNonOpaque: see neededNonOpaque;
  *  - unresolved is not 0: larger budgets help only if neededCandidates or neededPairs exceeds its budget.
  *  base.status is ERROR_UNSUPPORTED if the device ended shader loops early, as software devices do.
  *  @threads handle */

@@ -10,7 +10,7 @@
 
 namespace gpgp::core {
 
-constexpr uint32_t kMaxResources = 40;
+constexpr uint32_t kMaxResources = 44;
 constexpr uint32_t kMaxGroupCounts = 20;
 constexpr uint32_t kMaxConditions = 56;
 constexpr uint32_t kMaxTargets = 16;

@@ -68,7 +68,19 @@ std::string withoutNumber(const std::string& name) {
   return name.substr(0, name.find('['));
 }
 
-std::string joined(const std::set<std::string>& names) {
+/// What passes read that make triangles goes by one name.
+std::set<std::string> shortened(std::set<std::string> names) {
+  constexpr const char* kTriangles[] = {"camera", "draw table", "draws", "geometrySet", "indices", "positions"};
+  if (!std::all_of(std::begin(kTriangles), std::end(kTriangles),
+                   [&](const char* name) { return names.contains(name); }))
+    return names;
+  for (const char* name : kTriangles) names.erase(name);
+  names.insert("*triangles*");
+  return names;
+}
+
+std::string joined(const std::set<std::string>& all) {
+  const std::set<std::string> names = shortened(all);
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text.empty() ? "–" : text;
@@ -145,7 +157,9 @@ std::array<std::string, 2> pages() {
               tableOf(test::spawnPasses(true), files) +
               "\nForms of the interpreter, which pass `derive` runs for grammars without a kernel:\n\n" +
               interpreters(files) +
-              "\n## Visibility\n\nWith all methods. Without 64-bit atomics there are passes `ids`, too.\n\n" +
+              "\n## Visibility\n\nWith all methods. Without 64-bit atomics there are passes `ids`, too. *triangles*: "
+              "camera, draw table,\n"
+              "draws, geometrySet, indices, positions.\n\n" +
               tableOf(test::visibilityPasses(), files) + "\n### Shading atlas\n\n" +
               tableOf(test::atlasPasses(), files),
           vector};

@@ -8,6 +8,7 @@ core::PassList visibilityPasses() {
   GpgpVisibilityRecorderCreateInfo info = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
   info.methods = GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_CONSERVATIVE_BIT |
                  GPGP_SAMPLING_NEARBY_BIT | GPGP_SAMPLING_REFERENCE_BIT;
+  info.maxNonOpaque = 1;
   const core::Device device = deviceOf(false);
   return visibility::describePasses(visibility::Budgets(info, device.limits), device, std::pmr::get_default_resource());
 }

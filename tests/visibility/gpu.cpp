@@ -34,7 +34,11 @@ void sortByDraw(GpuResult& result) {
 }
 } // namespace
 
-SceneBuffers::SceneBuffers(host::HeadlessDevice& device, Scene& scene) {
+SceneBuffers::~SceneBuffers() {
+  for (const VkSampler sampler : samplers_) device_.vk().vkDestroySampler(device_.device(), sampler, nullptr);
+}
+
+SceneBuffers::SceneBuffers(host::HeadlessDevice& device, Scene& scene) : device_(device) {
   const visibility::CpuInput input = scene.input();
   const auto copy = [&](const auto& span, const char* name) {
     return host::makeBuffer(device, std::vector(span.begin(), span.end()), kStorage, name);
@@ -42,6 +46,23 @@ SceneBuffers::SceneBuffers(host::HeadlessDevice& device, Scene& scene) {
   positions = copy(input.positions, "positions");
   indices = copy(input.indices, "indices");
   draws = copy(input.draws, "draws");
+  if (!scene.textures.empty()) coordinates = copy(input.coordinates, "texture coordinates");
+  for (const AlphaTexture& texture : scene.textures) {
+    VkSampler& sampler = samplers_[texture.linear];
+    VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+    info.magFilter = info.minFilter = texture.linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+    if (!sampler)
+      host::check(device.vk().vkCreateSampler(device.device(), &info, nullptr, &sampler), "vkCreateSampler");
+    textures.emplace_back(device, host::ImageInfo{.format = VK_FORMAT_R8G8B8A8_UNORM,
+                                                  .width = texture.width,
+                                                  .height = texture.height,
+                                                  .usage = VK_IMAGE_USAGE_SAMPLED_BIT});
+    std::vector<uint8_t> pixels;
+    for (const uint8_t alpha : texture.alpha) pixels.insert(pixels.end(), {0, 0, 0, alpha});
+    host::uploadImage(device, textures.back(), pixels, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    alphaTests.push_back(
+        {textures.back().view(), sampler, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, texture.cutoff, 0});
+  }
   if (!scene.commands.empty()) commands = copy(input.commands, "commands");
   if (!scene.numbers.empty()) numbers = copy(input.numbers, "numbers");
   if (scene.drawCount != UINT32_MAX) drawCount = copy(std::array{scene.drawCount}, "draw count");
@@ -50,7 +71,7 @@ SceneBuffers::SceneBuffers(host::HeadlessDevice& device, Scene& scene) {
 GpgpRecorder VisibilityGpuTest::createRecorder(uint32_t width, uint32_t height, uint32_t maxTriangles,
                                                bool engineScratch, uint32_t methods, uint32_t maxSamples,
                                                uint32_t maxCandidates, uint32_t maxPairs, uint32_t maxCameras,
-                                               uint32_t maxDraws) {
+                                               uint32_t maxDraws, uint32_t maxNonOpaque) {
   GpgpVisibilityRecorderCreateInfo info = GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT;
   info.base.label = "recorder";
   info.base.queueFamily = queue().family;
@@ -64,6 +85,7 @@ GpgpRecorder VisibilityGpuTest::createRecorder(uint32_t width, uint32_t height, 
   info.maxPairs = maxPairs;
   info.maxCameras = maxCameras;
   info.maxDraws = maxDraws;
+  info.maxNonOpaque = maxNonOpaque;
   return recorder(gpgpCreateVisibilityRecorder, info);
 }
 
@@ -121,15 +143,19 @@ GpgpVisibilityInfo VisibilityGpuTest::sampleInfo(const Scene& scene, const Scene
   }
   if (buffers.drawCount.handle()) info.drawCountBuffer = buffers.drawCount.range();
   info.triangleCount = scene.params.triangleCount;
+  info.alphaTests = buffers.alphaTests.data();
+  info.alphaTestCount = static_cast<uint32_t>(buffers.alphaTests.size());
+  if (info.alphaTestCount) info.textureCoordinates = buffers.coordinates.range();
+  info.camera.layerMask = scene.params.cameraLayers[0];
   return info;
 }
 
 GpuResult VisibilityGpuTest::sample(Scene& scene, const GpuOptions& options, uint32_t maxTriangles) {
   scene.input();                                                               // fills in what depends on the scene
   const auto roundUp = [](uint32_t size) { return (size + 255) / 256 * 256; }; // few recorders for many scenes
-  const GpgpRecorder recorder =
-      createRecorder(roundUp(scene.params.width), roundUp(scene.params.height), maxTriangles, true,
-                     1u << options.method, std::min(options.samples, 4u), 0, 0, scene.params.cameraCount);
+  const GpgpRecorder recorder = createRecorder(roundUp(scene.params.width), roundUp(scene.params.height), maxTriangles,
+                                               true, 1u << options.method, std::min(options.samples, 4u), 0, 0,
+                                               scene.params.cameraCount, 0, scene.params.maxNonOpaque);
   const GpgpAsset set = createGeometrySet(scene);
   const GpuResult result = sample(scene, recorder, set, options);
   gpgpDestroyAsset(set);
@@ -161,6 +187,7 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpRecorder handle, GpgpAsset
   for (size_t i = 0; i < cameras.size(); ++i) {
     std::copy_n(scene.params.viewProjection + (i + 1) * 16, 16, cameras[i].viewProjection);
     cameras[i].reversedDepth = scene.params.reversedDepth;
+    cameras[i].layerMask = scene.params.cameraLayers[i + 1];
   }
   for (size_t i = 0; i < scene.cameraOrigins.size(); ++i)
     for (int k = 0; k < 3; ++k) (i ? cameras[i - 1] : info.camera).origin[k] = scene.cameraOrigins[i][k];
@@ -185,6 +212,9 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpRecorder handle, GpgpAsset
   for (const host::Buffer* buffer :
        {&bits, &list, &count, &sizes, &drawCommands, &drawIndices, &drawTriangles, &extents})
     host::fill(device, *buffer, kPoison);
+  host::Buffer changed(device, (std::min(options.changedTriangles, info.triangleCount * 2 + 64) + 4) * 4, kStorage);
+  host::fill(device, changed, kPoison);
+  if (options.view) info.changedList = toHost(changed);
   info.visibleBits = toHost(bits);
   info.pixelCounts = toHost(sizes);
   if (capacity) info.visibleList = toHost(list);
@@ -223,10 +253,10 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpRecorder handle, GpgpAsset
   result.list = host::download<uint32_t>(device, list, capacity);
   if (capacity) {
     result.list.resize(std::min<size_t>(result.list.size(), result.report.listed));
-    std::sort(result.list.begin(), result.list.end());
   } else {
     EXPECT_EQ(host::download<uint32_t>(device, list, 1)[0], kPoison);
   }
+  if (options.view) result.changed = host::download<uint32_t>(device, changed, changed.size() / 4);
   result.count = host::download<uint32_t>(device, count, 4);
   if (options.byDraw) {
     result.extents = host::download<uint32_t>(device, extents, info.triangleCount * 3);
@@ -268,6 +298,10 @@ void expectEqual(const GpuResult& gpu, const visibility::CpuResult& cpu, const s
   EXPECT_EQ(differentIds, 0u) << what;
   EXPECT_EQ(differentDepths, 0u) << what;
   EXPECT_EQ(gpu.bits, cpu.bits) << what;
+  const auto listed = std::min(gpu.list.size(), cpu.list.size());
+  EXPECT_TRUE(std::equal(gpu.list.begin(), gpu.list.end(), cpu.list.begin(),
+                         cpu.list.begin() + static_cast<std::ptrdiff_t>(listed)))
+      << what;
   EXPECT_EQ(gpu.report.triangles, cpu.counters.triangles) << what;
   EXPECT_EQ(gpu.report.visible, cpu.counters.visible) << what;
   EXPECT_EQ(gpu.report.coveredPixels, cpu.counters.coveredPixels) << what;
@@ -275,6 +309,7 @@ void expectEqual(const GpuResult& gpu, const visibility::CpuResult& cpu, const s
   EXPECT_EQ(gpu.report.skippedTriangles, cpu.counters.skippedTriangles) << what;
   EXPECT_EQ(gpu.report.skippedDraws, cpu.counters.skippedDraws) << what;
   EXPECT_EQ(gpu.report.neededCandidates, cpu.counters.candidates) << what;
+  EXPECT_EQ(gpu.report.neededNonOpaque, cpu.counters.nonOpaque) << what;
   EXPECT_EQ(gpu.report.neededPairs, cpu.counters.pairs) << what;
   EXPECT_EQ(gpu.report.neededDraws, cpu.counters.draws) << what;
   EXPECT_EQ(gpu.report.unresolved, cpu.counters.unresolved) << what;

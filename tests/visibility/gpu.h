@@ -23,6 +23,7 @@ struct GpuOptions {
   uint32_t width = 0, height = 0; ///< 0: the scene's
   float resolution = 0, reach = 0;
   bool clusters = false;                                          ///< makes and uses them
+  uint32_t changedTriangles = UINT32_MAX;                         ///< with a view: room for changes; UINT32_MAX: all
   bool byDraw = true;                                             ///< lists by draw, commands, sizes
   uint32_t drawTriangles = UINT32_MAX, drawCommands = UINT32_MAX; ///< their budgets
 };
@@ -31,7 +32,8 @@ struct GpuResult {
   std::vector<uint32_t> sizes;                                    ///< samples per triangle
   std::vector<uint32_t> drawCommands, drawIndices, drawTriangles; ///< a draw's triangles ascending
   std::vector<uint32_t> extents;
-  std::vector<uint32_t> bits, list, count; ///< list: as much as was written, sorted
+  std::vector<uint32_t> bits, list, count; ///< list: as much as was written
+  std::vector<uint32_t> changed;           ///< with a view: the whole buffer
   std::vector<uint32_t> depth, ids;        ///< from the scratch buffer
   uint32_t chunks = 0, keptChunks = 0;     ///< likewise
   GpgpVisibilityReport report = GPGP_VISIBILITY_REPORT_INIT;
@@ -40,7 +42,16 @@ struct GpuResult {
 /// The engine's side of one scene: its buffers on the device.
 struct SceneBuffers {
   SceneBuffers(host::HeadlessDevice& device, Scene& scene);
-  host::Buffer positions, indices, draws, commands, numbers, drawCount;
+  SceneBuffers(const SceneBuffers&) = delete;
+  SceneBuffers& operator=(const SceneBuffers&) = delete;
+  ~SceneBuffers();
+  host::Buffer positions, indices, draws, commands, numbers, drawCount, coordinates;
+  std::vector<host::Image> textures;
+  std::vector<GpgpAlphaTest> alphaTests;
+
+private:
+  host::HeadlessDevice& device_;
+  VkSampler samplers_[2] = {}; // nearest, linear
 };
 
 struct VisibilityGpuTest : DeviceTest {
@@ -48,7 +59,8 @@ struct VisibilityGpuTest : DeviceTest {
 
   GpgpRecorder createRecorder(uint32_t width, uint32_t height, uint32_t maxTriangles = 0, bool engineScratch = false,
                               uint32_t methods = 0, uint32_t maxSamples = 0, uint32_t maxCandidates = 0,
-                              uint32_t maxPairs = 0, uint32_t maxCameras = 0, uint32_t maxDraws = 0);
+                              uint32_t maxPairs = 0, uint32_t maxCameras = 0, uint32_t maxDraws = 0,
+                              uint32_t maxNonOpaque = 0);
   GpgpAsset createGeometrySet(const Scene& scene);
   GpgpHistory createView(uint32_t maxTriangles);
   /// Copies all that is pending.

@@ -45,7 +45,10 @@ std::map<std::string, size_t> offsetsOf(std::span<const uint32_t> module, const 
 
 TEST(Layout, ParamsAgree) {
   for (const auto& offsets : {offsetsOf(named_small, "Params"), offsetsOf(named_finish, "Params")}) {
-    EXPECT_EQ(offsets.size(), 56u);
+    EXPECT_EQ(offsets.size(), 66u);
+    EXPECT_OFFSET(offsets, Params, cameraLayers);
+    EXPECT_OFFSET(offsets, Params, alphaTests);
+    EXPECT_OFFSET(offsets, Params, nonOpaqueAt);
     EXPECT_OFFSET(offsets, Params, viewProjection);
     EXPECT_OFFSET(offsets, Params, width);
     EXPECT_OFFSET(offsets, Params, reversedDepth);
@@ -71,7 +74,9 @@ TEST(Layout, ParamsAgree) {
 
 TEST(Layout, CountersAgree) {
   for (const auto& offsets : {offsetsOf(named_large, "Counters"), offsetsOf(named_finish, "Counters")}) {
-    EXPECT_EQ(offsets.size(), 54u);
+    EXPECT_EQ(offsets.size(), 57u);
+    EXPECT_OFFSET(offsets, Counters, nonOpaque);
+    EXPECT_OFFSET(offsets, Counters, nonOpaqueArgs);
     EXPECT_OFFSET(offsets, Counters, triangles);
     EXPECT_OFFSET(offsets, Counters, skippedDraws);
     EXPECT_OFFSET(offsets, Counters, listed);

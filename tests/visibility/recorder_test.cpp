@@ -273,8 +273,16 @@ TEST_F(VisibilityGpuTest, AViewTellsWhatAppearedAndDisappeared) {
     CpuInput input = scene.input();
     input.previousBits = before;
     const CpuResult cpu = sampleOnCpu(input);
-    const GpuResult gpu = sample(scene, recorder, set, {.view = view, .tag = uint64_t(i)});
+    const uint32_t room = i == 1 ? 100 : UINT32_MAX;
+    const GpuResult gpu = sample(scene, recorder, set, {.view = view, .tag = uint64_t(i), .changedTriangles = room});
     expectEqual(gpu, cpu, "frame " + std::to_string(i));
+    EXPECT_EQ(gpu.report.base.status, i == 1 ? GPGP_BUDGET_EXCEEDED : GPGP_SUCCESS);
+    std::vector<uint32_t> changed{cpu.counters.appeared, cpu.counters.disappeared, 0, 0};
+    changed.insert(changed.end(), cpu.changed.begin(), cpu.changed.end());
+    changed.resize(std::min<size_t>(changed.size(), 4 + size_t{room}));
+    EXPECT_EQ(gpu.report.changed + 4, changed.size()) << i;
+    EXPECT_TRUE(std::equal(changed.begin(), changed.end(), gpu.changed.begin())) << i;
+    for (size_t k = changed.size(); k < gpu.changed.size(); ++k) ASSERT_EQ(gpu.changed[k], 0xdeadbeefu) << i;
     EXPECT_EQ(gpu.report.appeared, cpu.counters.appeared) << i;
     EXPECT_EQ(gpu.report.disappeared, cpu.counters.disappeared) << i;
     if (i == 0) {

@@ -64,6 +64,11 @@ visibility::CpuInput Scene::input() {
   split(cameraOrigins, params.cameraOrigins);
   params.originCount = static_cast<uint32_t>(origins.size());
   params.hasOrigins = !origins.empty() || !cameraOrigins.empty();
+  params.allLayers = 0;
+  for (uint32_t i = 0; i < std::max(params.cameraCount, 1u); ++i) {
+    const uint32_t layers = params.cameraLayers[i];
+    params.allLayers = i && (!layers || !params.allLayers) ? 0 : params.allLayers | layers;
+  }
   params.gridShift = 8;
   params.gridX = params.gridY = 128;
   params.drawCount = static_cast<uint32_t>(draws.size());
@@ -89,7 +94,32 @@ visibility::CpuInput Scene::input() {
     for (size_t i = 0; i < indices.size(); ++i) shortIndices[i / 2] |= (indices[i] & 0xffffu) << (i % 2 * 16);
     params.indexCount = static_cast<uint32_t>(shortIndices.size() * 2);
   }
-  return {params, positionWords, useShort ? shortIndices : indices, draws, meshes, commands, numbers, drawCount, {}};
+  params.alphaTestCount = static_cast<uint32_t>(textures.size());
+  for (size_t i = 0; i < textures.size(); ++i) params.alphaTests[i * 2] = textures[i].cutoff;
+  params.textureStride = 8;
+  params.textureCount = static_cast<uint32_t>(coordinates.size() / 2);
+  coordinateWords.resize(coordinates.size());
+  for (size_t i = 0; i < coordinates.size(); ++i) coordinateWords[i] = std::bit_cast<uint32_t>(coordinates[i]);
+  const auto alphaAt = [this](uint32_t test, glm::vec2 place) {
+    const AlphaTexture& texture = textures[test];
+    const auto texel = [](float at, uint32_t size) {
+      const float scaled = at * static_cast<float>(size);
+      return static_cast<uint32_t>(static_cast<int64_t>(std::floor(scaled)) & int64_t(size - 1)); // powers of two
+    };
+    const size_t x = texel(place.x, texture.width), y = texel(place.y, texture.height);
+    return static_cast<float>(texture.alpha[y * texture.width + x]) / 255.0f;
+  };
+  return {params,
+          positionWords,
+          useShort ? shortIndices : indices,
+          draws,
+          meshes,
+          commands,
+          numbers,
+          coordinateWords,
+          alphaAt,
+          drawCount,
+          {}};
 }
 
 glm::mat4 perspective(float fieldOfView, float aspect, float nearPlane, float farPlane, bool reversed) {

@@ -7,8 +7,19 @@
 
 namespace gpgp::test {
 
+/// Alpha of a texture whose coordinates repeat, one byte a texel.
+struct AlphaTexture {
+  uint32_t width = 1, height = 1;
+  std::vector<uint8_t> alpha;
+  float cutoff = 0.5f;
+  bool linear = false; ///< how the device filters it; the CPU reference takes the texel that a place lies in
+};
+
 struct Scene {
-  std::vector<float> positions; ///< params.positionStride / 4 each, 3 used
+  std::vector<float> coordinates; ///< texture coordinates, two a vertex
+  std::vector<AlphaTexture> textures;
+  std::vector<uint32_t> coordinateWords; ///< made by input()
+  std::vector<float> positions;          ///< params.positionStride / 4 each, 3 used
   std::vector<uint32_t> indices;
   std::vector<uint32_t> shortIndices; ///< the same in 16 bits, two a word, where useShort is set
   bool useShort = false;

@@ -77,6 +77,38 @@ TEST_F(SkinnedTest, PositionsThatTheGpuWritesBetweenTwoRecordsMove) {
   }
 }
 
+// Bounds of clusters are those of the positions in the buffer: computed again with each recording that does not keep
+// them, and right as long as what is kept is of the same positions.
+TEST_F(SkinnedTest, ClustersFollowThePositionsUnlessTheyAreKept) {
+  const GpgpRecorder recorder = createRecorder(96, 96, 4096);
+  Scene before = restPose(), after = posed(before);
+  const SceneBuffers buffers(device, before), source(device, after);
+  const GpgpAsset set = createGeometrySet(before);
+  upload();
+  constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  const host::Buffer clusters(device, VkDeviceSize{48} * (before.indices.size() / 192 + 1), kStorage);
+  const auto sampled = [&](const host::Buffer& positions, bool keeps) {
+    const std::vector<uint32_t> size = sampleOnCpu(before.input()).bits;
+    const host::Buffer bits(device, size.size() * 4, kStorage);
+    GpgpVisibilityInfo record = info(before, buffers, set, GPGP_SAMPLING_STANDARD, bits);
+    record.positions = positions.range();
+    record.clusters = clusters.range();
+    record.keepClusters = keeps;
+    const GpgpFrame frame = advance();
+    device.submitAndWait(queue(), [&](VkCommandBuffer commands) {
+      EXPECT_EQ(gpgpRecordPrepareVisibility(recorder, commands, &frame, &record), GPGP_SUCCESS);
+    });
+    return host::download<uint32_t>(device, bits, size.size());
+  };
+  for (Scene* pose : {&before, &after, &before, &after}) {
+    const std::vector<uint32_t> expected = sampleOnCpu(pose->input()).bits;
+    const host::Buffer& positions = pose == &before ? buffers.positions : source.positions;
+    EXPECT_EQ(sampled(positions, false), expected);
+    EXPECT_EQ(sampled(positions, true), expected);
+  }
+  gpgpDestroyAsset(set);
+}
+
 TEST_F(SkinnedTest, PositionsThatTheCpuWritesBetweenTwoRecordsMove) {
   const GpgpRecorder recorder = createRecorder(96, 96, 4096);
   Scene before = restPose(), after = posed(before);

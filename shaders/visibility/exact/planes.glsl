@@ -131,13 +131,14 @@ bool isAhead(Entry own, uint lane, uint wide, uvec4 open_) {
   Facet its = facetOfLane(own, lane);
   Facet mine = facetOf(own.plane, own.box);
   bool isRival = (own.list & (1u << lane)) != 0u && laneOf() != lane && own.nearest <= uintBitsToFloat(told.y);
+  if (isRival) isRival = !hidesNothing(own.place);
   if (isRival) isRival = leadWithin(mine, its) >= 0.0;
   if (isRival && (wide & (1u << laneOf() | 1u << lane)) == 0u)
     isRival = overlap(cornersAt(laneOf()), cornersAt(lane));
   Crossing c = crossingOf(mine, its, own.id < told.x); // each works out its own entry's
   uvec4 hides = uvec4(floatBitsToUint(c.start), floatBitsToUint(c.step), uint(c.side), own.place);
   int row = int(laneOf());
-  uvec4 rest = samplesOf(outlineAt(told.z)) & open_;
+  uvec4 rest = ownAmong(told.z, open_);
   bool any = true;
   for (uint left = lanesWith(isRival); left != 0u && any; left &= left - 1u) {
     uvec4 rival = fromLane(hides, uint(findLSB(left)));
@@ -145,7 +146,8 @@ bool isAhead(Entry own, uint lane, uint wide, uvec4 open_) {
     c.step = uintBitsToFloat(rival.y);
     c.side = int(rival.z);
     Outline other = outlineAt(rival.w);
-    rest &= ~uvec4(samplesOf(spanAhead(other, c, row)), samplesOf(spanAhead(other, c, row + 32)));
+    uvec4 ahead = uvec4(samplesOf(spanAhead(other, c, row)), samplesOf(spanAhead(other, c, row + 32)));
+    rest &= ~tested(rival.w, ahead & rest);
     any = lanesWith(!isNone(rest)) != 0u;
   }
   return lanesWith(!isNone(rest)) != 0u;

@@ -56,6 +56,7 @@ uint resolveSome(uint first, uint count) {
     for (uint i = begin; i < begin + n; ++i) nearest = min(nearest, keyAt(i));
   bool isKnown = true;
   if (isThere) {
+    putOpen(own.place, items[lane], pixel);
     put(own.place, o, moves ? parallaxIn(pixel, nearest, key, own.place - begin) : 0);
     isKnown = isShown(own.id);
   }

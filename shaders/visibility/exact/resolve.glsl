@@ -8,6 +8,8 @@ layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
 layout(std430, set = 0, binding = kBindOpen) readonly buffer OpenBuffer { uint open[]; };
 #include "visibility/exact/candidates.glsl"
+#include "visibility/shared/alpha.glsl"
+layout(constant_id = 3) const bool kNonOpaque = false; // some recordings have triangles that are not opaque
 layout(std430, set = 0, binding = kBindEntries) readonly buffer EntryBuffer { uint entries[]; };
 
 shared uint items[kBatch]; // candidates of a batch
@@ -15,6 +17,7 @@ shared uvec4 keys[kBatch / 4u];
 shared vec4 edges[kBatch]; // their outlines, in order: left, right
 shared uvec2 thirds[kBatch]; // as bits; the last one says whether it is a left one
 shared uint rows[kBatch];    // first and last; parallax
+shared uvec4 opens[kBatch];  // with kNonOpaque: pixel, candidate, its draw's flags; 0: it is opaque
 
 /// Bits: which of 32 columns lie before one, for those from 32 before the first to 64 behind it. Two reads of it are
 /// faster than what makes a mask.
@@ -116,19 +119,56 @@ Outline outlineAt(uint place) {
   return o;
 }
 
+void putOpen(uint place, uint item, ivec2 pixel) {
+  if (kNonOpaque)
+    opens[place] = uvec4(uvec2(pixel), item, isNonOpaqueCandidate(item) ? nonOpaqueFlags(item) : 0u);
+}
+bool hidesNothing(uint place) { return kNonOpaque && isSeeThrough(opens[place].w); }
+
+bool isNone(uvec4 v) { return (v.x | v.y | v.z | v.w) == 0u; }
+
+#ifdef GPGP_ALPHA_TESTS
+uint testedRow(uint asked, NonOpaque cut, ivec2 first) {
+  uint test = alphaTestOf(cut.flags);
+  uint passed = 0u;
+  for (; asked != 0u; asked &= asked - 1u) {
+    int column = findLSB(asked);
+    if (passesAlpha(test, cut.plane, first + ivec2(column * 4, 0))) passed |= 1u << uint(column);
+  }
+  return passed;
+}
+#endif
+
+/// Of samples in the rows of this invocation, those at which the texture of a triangle lets it be.
+uvec4 tested(uint place, uvec4 asked) {
+#ifdef GPGP_ALPHA_TESTS
+  uvec4 own = opens[place];
+  if (alphaTestOf(own.w) == 0u || isNone(asked)) return asked;
+  NonOpaque cut = readNonOpaque(own.z);
+  ivec2 first = ivec2(own.xy) * 256 + ivec2(2, 2 + int(laneOf()) * 4);
+  return uvec4(testedRow(asked.x, cut, first), testedRow(asked.y, cut, first + ivec2(128, 0)),
+               testedRow(asked.z, cut, first + ivec2(0, 128)), testedRow(asked.w, cut, first + ivec2(128, 128)));
+#else
+  return asked;
+#endif
+}
+
 /// What a batch shows.
 struct Looked {
   uint seen;  // bits: places
   bool holes; // samples that nothing covers yet
 };
 
-bool isNone(uvec4 v) { return (v.x | v.y | v.z | v.w) == 0u; }
-
 /// The samples of an outline in the rows of this invocation.
 uvec4 samplesOf(Outline o) {
   int row = int(laneOf());
   return uvec4(samplesOf(spanIn(o, row)), samplesOf(spanIn(o, row + 32)));
 }
+
+/// Of samples in the rows of this invocation, those that an entry covers.
+uvec4 ownAmong(uint place, uvec4 asked) { return tested(place, samplesOf(outlineAt(place)) & asked); }
+/// And those that it leaves open.
+uvec4 openBehind(uint place, uvec4 asked) { return hidesNothing(place) ? asked : asked & ~ownAmong(place, asked); }
 
 /// Bits: places of entries that move and have a sample near that none before them covers.
 uint lookAround(uint first, uint n, uvec4 uncovered) {
@@ -139,9 +179,9 @@ uint lookAround(uint first, uint n, uvec4 uncovered) {
     int parallax = parallaxAt(k);
     if (parallax != 0) {
       uvec4 shown = uvec4(samplesAround(o, parallax, row), samplesAround(o, parallax, row + 32)) & uncovered;
-      if (!isNone(shown)) found |= 1u << k;
+      if (!isNone(tested(k, shown))) found |= 1u << k;
     }
-    uncovered &= ~samplesOf(o);
+    uncovered = openBehind(k, uncovered);
   }
   return found;
 }
@@ -151,9 +191,9 @@ Looked lookAtBatch(uint first, uint n, bool moves, inout uvec4 uncovered) {
   sync();
   uint found = moves ? lookAround(first, n, uncovered) : 0u;
   for (uint k = first; k < first + n && !isNone(uncovered); ++k) {
-    uvec4 own = samplesOf(outlineAt(k));
-    if (!isNone(own & uncovered)) found |= 1u << k;
-    uncovered &= ~own;
+    uvec4 own = ownAmong(k, uncovered);
+    if (!isNone(own)) found |= 1u << k;
+    if (!hidesNothing(k)) uncovered &= ~own;
   }
   Looked looked;
   looked.seen = orAll(found);

@@ -138,7 +138,7 @@ uint doubtedAmong(uint places, uvec4 doubted) {
   uint found = 0u;
   for (; places != 0u; places &= places - 1u) {
     uint place = uint(findLSB(places));
-    if (!isNone(samplesOf(outlineAt(place)) & doubted)) found |= 1u << place;
+    if (!isNone(ownAmong(place, doubted))) found |= 1u << place;
   }
   return orAll(found);
 }
@@ -176,6 +176,7 @@ bool resolveBatch(inout Rest rest, uint n, uint next, ivec2 pixel, inout Left sa
   }
   setKey(laneOf(), key);
   own.place = placeAmong(isThere, 0u, n);
+  if (isThere) putOpen(own.place, item, pixel);
   if (isThere) put(own.place, outline, parallaxIn(pixel, rest.nearest, key, rest.before + own.place));
   uvec4 open_ = samples.uncovered;
   bool decides = reachesOpen(f, open_);
@@ -194,7 +195,7 @@ bool resolveBatch(inout Rest rest, uint n, uint next, ivec2 pixel, inout Left sa
     uint undecided = doubtedAmong(orAll(isThere && isDoubted && !own.isSeen ? bit : 0u), samples.doubted);
     if ((undecided & bit) != 0u) showUndecided(own.id);
   }
-  bool goesOn = own.isSeen && !ends;
+  bool goesOn = own.isSeen && !ends && !hidesNothing(own.place);
   uint going = lanesWith(goesOn);
   uint forced = 0u;
   if (uint(bitCount(going)) > kMostCarried) {
@@ -210,14 +211,14 @@ bool resolveBatch(inout Rest rest, uint n, uint next, ivec2 pixel, inout Left sa
   // What ends is behind nothing that is left.
   if (going != 0u || forced != 0u || rest.hasDoubt) {
     for (uint ending = orAll(ends ? bit : 0u); ending != 0u; ending &= ending - 1u) {
-      uvec4 closed = samplesOf(outlineAt(uint(findLSB(ending))));
-      samples.uncovered &= ~closed;
-      samples.doubted &= ~closed;
+      uint place = uint(findLSB(ending));
+      samples.uncovered = openBehind(place, samples.uncovered);
+      samples.doubted = openBehind(place, samples.doubted);
     }
     for (; forced != 0u; forced &= forced - 1u) {
-      uvec4 closed = samplesOf(outlineAt(uint(findLSB(forced))));
-      samples.doubted |= closed & samples.uncovered;
-      samples.uncovered &= ~closed;
+      uvec4 left_ = openBehind(uint(findLSB(forced)), samples.uncovered);
+      samples.doubted |= samples.uncovered & ~left_;
+      samples.uncovered = left_;
     }
     rest.hasDoubt = lanesWith(!isNone(samples.doubted)) != 0u;
   }

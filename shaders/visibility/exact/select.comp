@@ -7,6 +7,8 @@
 #include "visibility/exact/lists.glsl"
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 #include "visibility/exact/tile_pairs.glsl"
+#include "visibility/shared/texture.glsl"
+layout(constant_id = 3) const bool kNonOpaque = true; // some recordings have triangles that are not opaque
 layout(local_size_x = 64) in;
 
 layout(std430, set = 0, binding = kBindQueue) readonly buffer QueueBuffer { uint queue[]; };
@@ -33,6 +35,19 @@ uint tileAmong(uvec3 tiles, uint i) {
   return tiles.x + (tiles.y == 1u ? i * tileColumns() : (i >> 1u) * tileColumns() + (i & 1u));
 }
 
+/// What lies behind a candidate that is not opaque: of a triangle's number among all chunks.
+NonOpaque makeNonOpaque(uint number) {
+  uint item;
+  Fetched f = fetchNumber(number, item);
+  ScreenTriangle t;
+  uint fate = classifyFetched(f, t);
+  uvec2 place = placeOfNumber(number);
+  NonOpaque r;
+  r.flags = f.flags;
+  r.plane = fetchTexturePlane(f, place.x, place.y, textureOrigin(t, fate, f.camera));
+  return r;
+}
+
 void main() {
   uint count = counters.onScreenCount;
   for (uint first = gl_WorkGroupID.x * 64u; first < count; first += gl_NumWorkGroups.x * 64u) {
@@ -47,6 +62,7 @@ void main() {
     uvec3 tiles = uvec3(0u);
     uint candidate = 0u;
     uint pair = 0u;
+    uint places = 1u; // that the candidate takes
     if (first + gl_LocalInvocationIndex < count) {
       uint item;
       Fetched f = fetchNumber(queue[params.maxItems + first + gl_LocalInvocationIndex], item);
@@ -54,9 +70,12 @@ void main() {
       if (classifyFetched(f, t) == kWhole) {
         ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
         seen = isSeen(id);
-        if (seen || mayShow(t, bounds, f.camera)) {
+        bool open = kNonOpaque && isNonOpaque(f.flags);
+        bool hides = !(open && seen && isSeeThrough(f.flags)); // or is asked about
+        if (open) places = 2u;
+        if (hides && (seen || mayShow(t, bounds, f.camera))) {
           tiles = tilesOf(bounds, f.camera);
-          candidate = atomicAdd(groupCandidates, 1u);
+          candidate = atomicAdd(groupCandidates, places);
           pair = atomicAdd(groupPairs, tiles.z);
         }
       }
@@ -71,13 +90,15 @@ void main() {
       candidate += firstCandidate;
       pair += firstPair;
       uint room = maxTilePairs() - min(pair, maxTilePairs());
-      if (candidate < params.maxCandidates && tiles.z <= room) {
-        uint places[kMostTiles]; // all counted first: what that says is waited for once, after the candidate is written
+      if (candidate + places <= params.maxCandidates && tiles.z <= room) {
+        uint order[kMostTiles]; // all counted first: what that says is waited for once, after the candidate is written
         for (uint i = 0u; i < kMostTiles; ++i)
-          if (i < tiles.z) places[i] = countIn(tileAmong(tiles, i), seen);
+          if (i < tiles.z) order[i] = countIn(tileAmong(tiles, i), seen);
         writeCandidate(candidate, makeCandidate(t, id));
+        if (places == 2u)
+          writeNonOpaque(candidate, makeNonOpaque(queue[params.maxItems + first + gl_LocalInvocationIndex]));
         for (uint i = 0u; i < kMostTiles; ++i)
-          if (i < tiles.z) enter(candidate, seen, tileAmong(tiles, i), places[i], pair + i);
+          if (i < tiles.z) enter(candidate, seen, tileAmong(tiles, i), order[i], pair + i);
       } else {
         show(id);
         for (uint i = 0u; i < min(tiles.z, room); ++i) pairs[(pair + i) * kTilePairWords] = kNoTile;

@@ -10,13 +10,21 @@ layout(std430, set = 0, binding = kBindQueue) readonly buffer QueueBuffer { uint
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
 #include "visibility/exact/candidates.glsl"
+#include "visibility/shared/texture.glsl"
+layout(constant_id = 3) const bool kNonOpaque = true; // some recordings have triangles that are not opaque
+
+// Of the triangle.
+bool open;
+NonOpaque nonOpaque;
 
 void add(ScreenTriangle t, uint id, uint camera) {
   ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(camera));
   if (bounds.x >= bounds.z || bounds.y >= bounds.w) return;
-  uint place = atomicAdd(counters.candidates, 1u);
-  if (place < params.maxCandidates) {
+  uint places = open ? 2u : 1u;
+  uint place = atomicAdd(counters.candidates, places);
+  if (place + places <= params.maxCandidates) {
     writeCandidate(place, makeCandidate(t, id));
+    if (open) writeNonOpaque(place, nonOpaque);
     uint slices = clamp(tilesOf(bounds, camera).z / kSliceTiles, 1u, kMaxSlices);
     uint first = atomicAdd(counters.bigCount, slices);
     // What is counted below the capacity is written, so that no entry lies unwritten among the others.
@@ -36,9 +44,16 @@ void main() {
   uint count = counters.bigQueueCount;
   for (uint entry = gl_GlobalInvocationID.x; entry < count; entry += gl_NumWorkGroups.x * 64u) {
     uint item;
-    Fetched f = fetchNumber(queue[params.maxItems * 2u - 1u - entry], item);
+    uint number = queue[params.maxItems * 2u - 1u - entry];
+    Fetched f = fetchNumber(number, item);
     ScreenTriangle t;
     uint fate = classifyFetched(f, t);
+    open = kNonOpaque && isNonOpaque(f.flags);
+    if (open) {
+      uvec2 at = placeOfNumber(number);
+      nonOpaque.flags = f.flags;
+      nonOpaque.plane = fetchTexturePlane(f, at.x, at.y, textureOrigin(t, fate, f.camera));
+    }
     if (fate == kWhole) add(t, f.id, f.camera);
     if (fate != kClipped) continue;
     ScreenPolygon polygon;

@@ -26,6 +26,7 @@ Listed listedOf(uint chunk) {
   l.index = 0u;
   l.listed = false;
   DrawEntry e = entryOf(l.entry);
+  if (!isSampledBy(draws[e.draw].flags, params.allLayers)) return l;
   uint local = (chunk - chunkStart(l.entry)) * kChunk + gl_LocalInvocationIndex;
   if (local >= e.indexCount / 3u) return l;
   l.index = e.firstIndex + local * 3u;

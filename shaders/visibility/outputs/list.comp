@@ -1,57 +1,56 @@
-// From bits to a compact list, and the change since the last recording. One invocation a word of 32 triangles;
-// a workgroup takes its places in the list with one atomic.
+// From bits to lists in ascending order: what is visible, and what has changed since the last recording. A workgroup a
+// part, one invocation a word of 32 triangles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "visibility/shared/layout.h"
-layout(local_size_x = 256) in;
-
-layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
-layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
-layout(std430, set = 0, binding = kBindBits) readonly buffer BitBuffer { uint bits[]; };
+#include "visibility/outputs/list.glsl"
 layout(std430, set = 0, binding = kBindList) writeonly buffer ListBuffer { uint list[]; };
-layout(std430, set = 0, binding = kBindView) buffer ViewBuffer { uint viewBits[]; };
+layout(std430, set = 0, binding = kBindChanged) writeonly buffer ChangedBuffer { uint changed[]; };
 
-shared uint groupVisible;
-shared uint groupFirst;
-shared uint groupAppeared;
-shared uint groupDisappeared;
+shared uvec3 sums[256];
+
+/// Sums up to each invocation.
+void sumUp(uvec3 own) {
+  uint lane = gl_LocalInvocationIndex;
+  sums[lane] = own;
+  barrier();
+  for (uint step = 1u; step < 256u; step *= 2u) {
+    uvec3 before = lane >= step ? sums[lane - step] : uvec3(0u);
+    barrier();
+    sums[lane] += before;
+    barrier();
+  }
+}
+
+void change(uint place, uint word, uint which) {
+  for (; which != 0u && place < params.changedCapacity; which &= which - 1u)
+    changed[kChangedHeader + place++] = word * 32u + uint(findLSB(which));
+}
 
 void main() {
   uint lane = gl_LocalInvocationIndex;
-  uint words = (params.triangleCount + 31u) / 32u;
-  uint all_ = max(words, params.viewWords);
-  uint stride = gl_NumWorkGroups.x * 256u;
-  for (uint base = gl_WorkGroupID.x * 256u; base < all_; base += stride) {
-    if (lane == 0u) {
-      groupVisible = 0u;
-      groupAppeared = 0u;
-      groupDisappeared = 0u;
-    }
-    barrier();
+  uvec3 before = uvec3(0u);
+  for (uint i = lane; i < gl_WorkGroupID.x; i += 256u)
+    before += uvec3(blocks[i * 3u], blocks[i * 3u + 1u], blocks[i * 3u + 2u]);
+  sumUp(before);
+  uvec3 first = sums[255];
+  barrier();
+  first.z += counters.appeared; // those that disappeared come behind all that appeared
+  for (uint base = blockBegin(); base < blockEnd(); base += 256u) {
     uint word = base + lane;
-    uint now = word < words ? bits[word] : 0u;
-    if (word + 1u == words) now &= 0xffffffffu >> (words * 32u - params.triangleCount); // what was there may have more
-    uint place = now != 0u ? atomicAdd(groupVisible, uint(bitCount(now))) : 0u;
-    if (word < params.viewWords) {
-      uint before = viewBits[word];
-      if (before != now) viewBits[word] = now;
-      uint appeared = now & ~before;
-      uint disappeared = before & ~now;
-      if (appeared != 0u) atomicAdd(groupAppeared, uint(bitCount(appeared)));
-      if (disappeared != 0u) atomicAdd(groupDisappeared, uint(bitCount(disappeared)));
-    }
+    Changes c;
+    c.now = 0u;
+    c.appeared = 0u;
+    c.disappeared = 0u;
+    if (word < blockEnd()) c = changesOf(word);
+    uvec3 own = uvec3(bitCount(c.now), bitCount(c.appeared), bitCount(c.disappeared));
+    sumUp(own);
+    uvec3 place = first + sums[lane] - own;
+    first += sums[255];
     barrier();
-    if (lane == 0u) {
-      groupFirst = groupVisible != 0u ? atomicAdd(counters.visible, groupVisible) : 0u;
-      if (groupAppeared != 0u) atomicAdd(counters.appeared, groupAppeared);
-      if (groupDisappeared != 0u) atomicAdd(counters.disappeared, groupDisappeared);
-    }
-    barrier();
-    place += groupFirst;
-    while (now != 0u && place < params.listCapacity) {
-      list[place++] = word * 32u + uint(findLSB(now));
-      now &= now - 1u;
-    }
-    barrier();
+    change(place.y, word, c.appeared);
+    change(place.z, word, c.disappeared);
+    if ((c.appeared | c.disappeared) != 0u) viewBits[word] = c.now;
+    for (uint now = c.now; now != 0u && place.x < params.listCapacity; now &= now - 1u)
+      list[place.x++] = word * 32u + uint(findLSB(now));
   }
 }

@@ -6,6 +6,9 @@ mat4 viewProjection(uint camera) {
               params.viewProjection[camera * 4u + 2u], params.viewProjection[camera * 4u + 3u]);
 }
 
+/// 0: all.
+uint layersOf(uint camera) { return params.cameraLayers[camera / 4u][camera % 4u]; }
+
 /// Makes a draw's transform relative to a camera's origin; false where the draw names none that is there.
 bool seeFrom(inout Draw draw, uint camera) {
   if (params.hasOrigins == 0u) return true;

@@ -31,12 +31,13 @@ uint findEntry(uint chunk) {
 bool mayBeInSight(uint chunk, uint entry) {
   DrawEntry e = entryOf(entry);
   Draw draw = draws[e.draw];
+  if (!isSampledBy(draw.flags, layersOf(e.camera))) return false;
   uint place = chunk - chunkStart(entry);
   // Triangles whose numbers are out of range are counted.
   uint end = min((place + 1u) * kChunk, e.indexCount / 3u);
   if (draw.firstTriangle > params.triangleCount || end > params.triangleCount - draw.firstTriangle) return true;
   Cluster c = clusters[firstCluster(draw.mesh) + place];
-  if (!seeFrom(draw, e.camera)) return true; // they are counted, too
+  if (alphaTestOf(draw.flags) > params.alphaTestCount || !seeFrom(draw, e.camera)) return true; // they are counted, too
   return !isOutOfSight(c, draw, viewProjection(e.camera), ivec2(int(params.width), int(params.height)));
 }
 

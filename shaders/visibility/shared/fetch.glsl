@@ -28,7 +28,9 @@ struct Fetched {
   vec3 worldC;
   uint id;
   uint camera;
-  bool valid; // false: skipped, for an index or a number out of range
+  uint flags;  // of its draw
+  bool valid;  // false: skipped, for an index or a number out of range
+  bool masked; // the camera does not sample its draw
   bool mirrored;
   bool twoSided;
 };
@@ -102,6 +104,10 @@ Fetched fetchTriangle(uint entry, uint local) {
   DrawEntry e = entryOf(entry);
   Draw draw = draws[e.draw];
   f.camera = e.camera;
+  f.flags = draw.flags;
+  f.masked = !isSampledBy(draw.flags, layersOf(e.camera));
+  f.valid = !f.masked && alphaTestOf(draw.flags) <= params.alphaTestCount;
+  if (!f.valid) return f;
   f.valid = fetchId(e, draw.firstTriangle, local, f.id) && seeFrom(draw, e.camera);
   f.mirrored = turnsFaces(draw);
   f.twoSided = (draw.flags & kTwoSided) != 0u;
@@ -125,16 +131,24 @@ Fetched fetchTriangle(uint entry, uint local) {
 }
 
 uint classifyFetched(Fetched f, out ScreenTriangle triangle) {
+  if (f.masked) return kOutside;
   if (!f.valid) return kSkipped;
   return classify(f.a, f.b, f.c, gridOf(f.camera), f.mirrored, f.twoSided, triangle);
 }
 
-/// Of a triangle's number among all chunks: each has room for kChunk.
-Fetched fetchNumber(uint number, out uint item) {
+/// The entry of a triangle's number among all chunks, of which each has room for kChunk, and the triangle's place in
+/// its draw.
+uvec2 placeOfNumber(uint number) {
   uint chunk = number / kChunk;
   uint entry = table[chunkAt(chunk)];
+  return uvec2(entry, (chunk - chunkStart(entry)) * kChunk + number % kChunk);
+}
+
+Fetched fetchNumber(uint number, out uint item) {
+  uvec2 place = placeOfNumber(number);
+  uint entry = place.x;
   uvec2 start = startOf(entry);
-  uint local = (chunk - start.y) * kChunk + number % kChunk;
+  uint local = place.y;
   item = start.x + local;
   return fetchTriangle(entry, local);
 }

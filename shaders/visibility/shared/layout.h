@@ -11,11 +11,17 @@ GPGP_CONST uint kNoTriangle = 0xffffffffu; ///< in a sample: nothing
 GPGP_CONST uint kFarthest = 0xffffffffu;   ///< in a sample: nothing
 GPGP_CONST uint kTwoSided = 1u;            ///< GPGP_DRAW_TWO_SIDED
 GPGP_CONST uint kClockwise = 2u;           ///< GPGP_DRAW_CLOCKWISE
+GPGP_CONST uint kSeeThrough = 4u;          ///< GPGP_DRAW_SEE_THROUGH
+GPGP_CONST uint kDisabled = 8u;            ///< GPGP_DRAW_DISABLED
+GPGP_CONST uint kAlphaTestBits = 0x1f00u;  ///< GPGP_DRAW_ALPHA_TEST: 1 and the index of its test, from bit 8 on
+GPGP_CONST uint kMaxAlphaTests = 16u;      ///< of one recording
 GPGP_CONST uint kMaxCameras = 128u;        ///< of one recording
 GPGP_CONST uint kMaxOrigins = 32u;         ///< that draws' transforms are relative to
 GPGP_CONST uint kMaxViewport = 8192u;      ///< pixels; edge functions stay below 2^48 up to here
 GPGP_CONST uint kMaxGroups = 65535u;       ///< workgroups per dimension that every device offers
 GPGP_CONST uint kListGroup = 64u;          ///< listed triangles per workgroup of the engine's indirect dispatch
+GPGP_CONST uint kListBlocks = 512u;        ///< parts of the visible bits that are counted before they are listed
+GPGP_CONST uint kChangedHeader = 4u;       ///< words of the list of changes before its triangles
 GPGP_CONST uint kLargeSplit = 32u;         ///< workgroups that share one large triangle that has no record
 GPGP_CONST uint kMaxSlices = 256u;         ///< records, a workgroup each, that share one large triangle at most
 GPGP_CONST uint kSliceBlocks = 64u;        ///< blocks of 8 x 8 pixels that one workgroup is given at least
@@ -27,12 +33,14 @@ GPGP_CONST uint kConservative = 3u;        ///< GPGP_SAMPLING_CONSERVATIVE
 GPGP_CONST uint kNearby = 4u;              ///< GPGP_SAMPLING_NEARBY
 GPGP_CONST uint kBatch = 32u;              ///< entries of a pixel's list that a workgroup looks at together
 GPGP_CONST uint kListRun = 8u;             ///< lists of at most so many that a workgroup is given
+GPGP_CONST uint kNonOpaqueSplit = 8u;      ///< workgroups that share one triangle that is not opaque
 GPGP_CONST uint kNoRecord = 0x80000000u;   ///< flag of a queued item whose triangles found no record
 
 /// Formats of positions.
 GPGP_CONST uint kFloats = 0u;
 GPGP_CONST uint kHalves = 1u;
 GPGP_CONST uint kSnorms = 2u;
+GPGP_CONST uint kUnorms = 3u; ///< of texture coordinates only
 
 /// Binding numbers of set 0, which are resource numbers of the pass list. Not more than the storage buffers that every
 /// device offers a shader: what is not needed at the same time shares a number.
@@ -59,8 +67,11 @@ GPGP_CONST int kBindDrawCommands = 18;
 GPGP_CONST int kBindDrawIndices = 19;
 GPGP_CONST int kBindDrawTriangles = 20;
 GPGP_CONST int kBindExtents = 21;
-GPGP_CONST int kBindPairs = 22;          // a tile and a candidate each, then which of its pixels; by tile: candidates
-GPGP_CONST int kBindOpen = kBindSamples; // exact, once ids are gathered: pixels with lists
+GPGP_CONST int kBindPairs = 22; // a tile and a candidate each, then which of its pixels; by tile: candidates
+GPGP_CONST int kBindTextureCoordinates = 23;
+GPGP_CONST int kBindChanged = 24;
+GPGP_CONST int kBindTextures = 25;              // kMaxAlphaTests in a row
+GPGP_CONST int kBindOpen = kBindSamples;        // exact, once ids are gathered: pixels with lists
 GPGP_CONST int kBindCandidates = kBindRecords;  // exact, once ids are drawn
 GPGP_CONST int kBindEntries = kBindQueue;       // exact, once all pairs are there: candidates in lists
 GPGP_CONST int kBindKeys = kBindPairs;          // exact, once lists have their places: depths of long ones' entries
@@ -127,6 +138,13 @@ struct Params {
   vec4 cameraOrigins[kMaxCameras * 2u];
   vec4 origins[kMaxOrigins * 2u];
 #endif
+#ifdef __cplusplus
+  uint cameraLayers[kMaxCameras];       // 0: all
+  float alphaTests[kMaxAlphaTests * 2]; // of each, the cutoff and the texture's level
+#else
+  uvec4 cameraLayers[kMaxCameras / 4u];
+  vec4 alphaTests[kMaxAlphaTests / 2u];
+#endif
   uint cameraCount;
   uint width;
   uint height; // of each camera; they lie one below the other in the buffer of samples
@@ -148,7 +166,7 @@ struct Params {
   uint positionOffset; // bytes
   uint positionStride;
   uint listCapacity;        // in triangles
-  uint hasList;             // 1: visibleList is there
+  uint hasList;             // 1: visibleList is there; 2: changedList; 3: both
   uint writeCount;          // 1: visibleCount is there; 2: with the number of draws
   uint viewWords;           // 0: no view
   uint drawCommandCapacity; // in draws
@@ -178,14 +196,23 @@ struct Params {
   uint clusterCount;  // of all meshes; 0: chunks are not tested
   uint originCount;   // of draws; 0: none has one
   uint hasOrigins;    // 1: draws or cameras have some
-  uint reserved;      // a uniform block is a multiple of 16 bytes
+  uint allLayers;     // of all cameras together; 0: all
+  uint alphaTestCount;
+  uint textureFormat; // of texture coordinates: kFloats, kHalves, kUnorms
+  uint textureOffset; // bytes
+  uint textureStride;
+  uint textureCount;    // that the range holds
+  uint maxNonOpaque;    // room for triangles that are not opaque
+  uint nonOpaqueAt;     // where that begins in the queue
+  uint changedCapacity; // triangles that the list of changes has room for; a uniform block is a multiple of 16 bytes
 };
 GPGP_CONST uint kHasReferenceCounts = 1u;
 GPGP_CONST uint kHasRecheck = 2u;
 GPGP_CONST uint kHasFalsePositives = 4u;
 GPGP_CONST uint kHasFalseNegatives = 8u;
 
-/// A triangle, or a piece of a clipped one, in a pixel's list.
+/// A triangle, or a piece of a clipped one, in a pixel's list. Behind one that is not opaque lies what tells where it
+/// is, in the room of another candidate.
 struct Candidate {
   ivec2 p0; // ScreenTriangle
   ivec2 p1;
@@ -210,6 +237,7 @@ struct Surface {
   float normalY;
   float normalZ;
 };
+GPGP_CONST uint kIsNonOpaque = 0x80000000u; ///< beside a candidate's triangle number
 GPGP_CONST uint kPairBytes = 8u;
 GPGP_CONST uint kTileWords = 3u;
 GPGP_CONST uint kTilePairWords = 3u;        ///< tile, candidate, the how manieth of its tile and kind, seen or not
@@ -229,7 +257,7 @@ struct Counters {
   uint skippedTriangles; // index out of range, coordinate not finite or too large, number not below triangleCount
   uint skippedDraws;     // mesh out of range
   uint listed;
-  uint hasList;    // 1: the recording has a list
+  uint hasList;    // Params::hasList
   uint candidates; // exact sampling: asked for
   uint pairs;      // asked for
   uint unresolved; // triangles and pairs that found no room, whose triangles count as visible
@@ -242,6 +270,8 @@ struct Counters {
   uint falsePositives;
   uint referenceArea[2]; // samples: low word, high word
   uint foundArea[2];
+  uint nonOpaque;   // triangles of alpha-tested and see-through draws, on the screen; whatever their budget
+  uint changed;     // written to the list of changes
   uint ended;       // 1: the device has ended loops before their time (core/turns.h)
   uint drawChunks;  // of one camera's draws
   uint chunks;      // of all draws
@@ -274,9 +304,21 @@ struct Counters {
   uint longArgs[3];
   uint keptCount; // chunks that may be in sight
   uint keptArgs[3];
+  uint nonOpaqueArgs[3];
 };
-GPGP_CONST uint kCounterWords = 86u;
-GPGP_CONST uint kReportWords = 25u;
+GPGP_CONST uint kCounterWords = 91u;
+GPGP_CONST uint kReportWords = 27u;
+
+/// Whether a draw's triangles may leave open what lies behind them.
+GPGP_FN bool isNonOpaque(uint flags) { return (flags & (kSeeThrough | kAlphaTestBits)) != 0u; }
+GPGP_FN bool isSeeThrough(uint flags) { return (flags & kSeeThrough) != 0u; }
+/// 1 and the index of a draw's alpha test; 0: none.
+GPGP_FN uint alphaTestOf(uint flags) { return (flags & kAlphaTestBits) >> 8u; }
+/// Whether a camera with these layers samples a draw.
+GPGP_FN bool isSampledBy(uint flags, uint layers) {
+  uint own = flags >> 16u;
+  return (flags & kDisabled) == 0u && (own == 0u || layers == 0u || (own & layers) != 0u);
+}
 
 /// The engine's indirect dispatch over a list: a workgroup per kListGroup triangles, in rows of at most kMaxGroups.
 GPGP_FN uvec3 listGroups(uint listed) {
@@ -287,8 +329,9 @@ GPGP_FN uvec3 listGroups(uint listed) {
 #ifdef __cplusplus
 static_assert(kListGroup == 64);
 static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 &&
-              sizeof(Params) == kMaxCameras * 112 + kMaxOrigins * 32 + 52 * 4 && sizeof(DrawEntry) == 4 * kEntryWords &&
-              sizeof(Candidate) == 64 && sizeof(Surface) == 20 && sizeof(Counters) == 4 * kCounterWords);
+              sizeof(Params) == kMaxCameras * 116 + kMaxOrigins * 32 + kMaxAlphaTests * 8 + 60 * 4 &&
+              sizeof(DrawEntry) == 4 * kEntryWords && sizeof(Candidate) == 64 && sizeof(Surface) == 20 &&
+              sizeof(Counters) == 4 * kCounterWords);
 #endif
 
 GPGP_SHADER_END

@@ -153,6 +153,8 @@ void main() {
     counters.onScreenArgs[2] = 1u;
     counters.overlapArgs[1] = 1u;
     counters.overlapArgs[2] = 1u;
+    counters.nonOpaqueArgs[1] = kNonOpaqueSplit;
+    counters.nonOpaqueArgs[2] = 1u;
     counters.splitArgs[1] = kLargeSplit;
     counters.splitArgs[2] = 1u;
     counters.leftArgs[1] = kLargeSplit;

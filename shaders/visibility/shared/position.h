@@ -22,5 +22,7 @@ GPGP_FN float snormToFloat(uint v) {
   return number <= -32767 ? -1.0f : divide(float(number), 32767.0f);
 }
 
+GPGP_FN float unormToFloat(uint v) { return divide(float(v), 65535.0f); }
+
 GPGP_SHADER_END
 #endif

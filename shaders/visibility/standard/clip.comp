@@ -48,6 +48,7 @@ void main() {
     ScreenTriangle t;
     uint fate = classifyFetched(f, t);
     bool placed = true;
+    bool drawn = !isNonOpaque(f.flags); // others are drawn by another pass
     if (fate == kWhole) placed = add(t, id);
     if (fate == kClipped) {
       ScreenPolygon polygon;
@@ -56,7 +57,7 @@ void main() {
       if (fate == kClipped) {
         atomicAdd(counters.triangles, 1u);
         for (int k = 0; k + 2 < polygon.count; ++k)
-          if (fanPiece(polygon, k, gridOf(f.camera), t) && !add(t, id)) placed = false;
+          if (drawn && fanPiece(polygon, k, gridOf(f.camera), t) && !add(t, id)) placed = false;
       }
     }
     if (!placed) {

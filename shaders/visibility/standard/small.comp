@@ -1,7 +1,8 @@
 // Depth, one invocation a triangle: rejects, draws small ones at once and queues the others. Small ones that were the
 // nearest in a pixel when they were drawn are queued for ids.comp from the queue's other end: each item takes one place
 // at most, so they never meet. Exact sampling also wants lists of those that are on the screen; they follow the queue:
-// those of at most 8 x 8 pixels from its front, the others and those that are clipped from its end.
+// those of at most 8 x 8 pixels from its front, the others and those that are clipped from its end. What is not opaque
+// is drawn by non_opaque.comp; its queue follows both. Where that is full, it counts as visible and hides nothing.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef GPGP_INT64_ATOMICS
@@ -15,6 +16,7 @@
 layout(local_size_x = 64) in; // kChunk
 
 layout(std430, set = 0, binding = kBindQueue) writeonly buffer QueueBuffer { uint queue[]; };
+layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
 
 shared uint groupTriangles;
 shared uint groupSkipped;
@@ -24,6 +26,8 @@ shared uint groupBig;
 shared uint firstWinner;
 shared uint firstOnScreen;
 shared uint firstBig;
+shared uint groupNonOpaque;
+shared uint firstNonOpaque;
 
 void main() {
   if (gl_LocalInvocationIndex == 0u) {
@@ -42,6 +46,7 @@ void main() {
       groupWinners = 0u;
       groupOnScreen = 0u;
       groupBig = 0u;
+      groupNonOpaque = 0u;
     }
     barrier();
     uint end = min(entryOf(drawIndex).indexCount / 3u, params.maxItems - start.x);
@@ -50,16 +55,22 @@ void main() {
     uint winner = kNone;
     uint onScreen = kNone;
     uint big = kNone;
+    uint nonOpaque = kNone;
+    uint id = 0u;
     if (local < end) {
       Fetched f = fetchTriangle(drawIndex, local);
+      id = f.id;
       ScreenTriangle t;
       uint fate = classifyFetched(f, t);
       if (fate == kSkipped) ++skipped;
       if (fate == kWhole) ++triangles;
       bool empty = fate == kWhole && isEmpty(t);
-      if (fate == kWhole && !empty && isSmall(t)) {
+      bool open = isNonOpaque(f.flags);
+      bool onSamples = fate == kWhole && !empty;
+      bool drawn = onSamples && !open;
+      if (drawn && isSmall(t)) {
         if (drawSmall(t, drawnId(f.id, start.x + local))) winner = atomicAdd(groupWinners, 1u);
-      } else if (fate == kClipped || (fate == kWhole && !empty)) {
+      } else if (fate == kClipped || drawn) {
         uint entry = atomicAdd(counters.queueCount, 1u);
         queue[entry] = start.x + local;
         atomicMax(counters.unfoldArgs[0], min(entry / 64u + 1u, kMaxGroups));
@@ -68,10 +79,13 @@ void main() {
         ivec4 bounds = ivec4(0);
         if (fate == kWhole) bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
         bool reaches = bounds.x < bounds.z && bounds.y < bounds.w;
+        onSamples = onSamples || reaches;
         bool isBig = fate == kClipped || (reaches && (bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8));
-        if (isBig) big = atomicAdd(groupBig, 1u);
-        else if (reaches) onScreen = atomicAdd(groupOnScreen, 1u);
+        bool listed = !open || params.maxNonOpaque != 0u;
+        if (isBig && listed) big = atomicAdd(groupBig, 1u);
+        else if (reaches && listed) onScreen = atomicAdd(groupOnScreen, 1u);
       }
+      if (open && (onSamples || fate == kClipped)) nonOpaque = atomicAdd(groupNonOpaque, 1u);
     }
     barrier();
     if (gl_LocalInvocationIndex == 0u) {
@@ -87,12 +101,22 @@ void main() {
         firstBig = atomicAdd(counters.bigQueueCount, groupBig);
         atomicMax(counters.bigUnfoldArgs[0], min((firstBig + groupBig + 63u) / 64u, kMaxGroups));
       }
+      if (groupNonOpaque != 0u) {
+        firstNonOpaque = atomicAdd(counters.nonOpaque, groupNonOpaque);
+        uint needed = firstNonOpaque + groupNonOpaque;
+        atomicMax(counters.nonOpaqueArgs[0], min(min(needed, params.maxNonOpaque), kMaxGroups));
+      }
     }
     barrier();
     uint number = chunk * kChunk + gl_LocalInvocationIndex;
     if (winner != kNone) queue[params.maxItems - 1u - firstWinner - winner] = number;
     if (onScreen != kNone) queue[params.maxItems + firstOnScreen + onScreen] = number;
     if (big != kNone) queue[params.maxItems * 2u - 1u - firstBig - big] = number;
+    if (nonOpaque != kNone) {
+      nonOpaque += firstNonOpaque;
+      if (nonOpaque < params.maxNonOpaque) queue[params.nonOpaqueAt + nonOpaque] = number;
+      else atomicOr(bits[id >> 5u], 1u << (id & 31u));
+    }
   }
   barrier();
   if (triangles != 0u) atomicAdd(groupTriangles, triangles);

@@ -187,6 +187,27 @@ std::string excerpt(const std::string& text) {
              : text;
 }
 
+Bytes imageBytes(const tinygltf::Model& gltf, int index, const std::filesystem::path& folder) {
+  if (index < 0 || static_cast<size_t>(index) >= gltf.images.size()) fail("a texture names no image");
+  const tinygltf::Image& image = gltf.images[static_cast<size_t>(index)];
+  if (image.uri.rfind("data:", 0) == 0) return decoded(image.uri, SIZE_MAX);
+  if (!image.uri.empty()) {
+    if (image.uri.find("://") != std::string::npos || image.uri.size() > kLongestPath)
+      fail("image " + std::to_string(index) + " lies at '" + excerpt(image.uri) +
+           "', which is no file beside the model");
+    return host::readFile(folder / pathOf(image.uri));
+  }
+  if (image.bufferView < 0 || static_cast<size_t>(image.bufferView) >= gltf.bufferViews.size())
+    fail("image " + std::to_string(index) + " lies nowhere");
+  const tinygltf::BufferView& view = gltf.bufferViews[static_cast<size_t>(image.bufferView)];
+  const auto buffer = static_cast<size_t>(view.buffer);
+  if (view.buffer < 0 || buffer >= gltf.buffers.size() || view.byteOffset > gltf.buffers[buffer].data.size() ||
+      view.byteLength > gltf.buffers[buffer].data.size() - view.byteOffset)
+    fail("image " + std::to_string(index) + " reaches beyond its buffer");
+  const auto begin = gltf.buffers[buffer].data.begin() + static_cast<std::ptrdiff_t>(view.byteOffset);
+  return {begin, begin + static_cast<std::ptrdiff_t>(view.byteLength)};
+}
+
 tinygltf::Model readGltf(const std::filesystem::path& file, bool (*isRead)(const std::string& extension)) {
   Container container = chunksOf(host::readFile(file));
   Json json = parsed(container.json);
@@ -205,6 +226,15 @@ tinygltf::Model readGltf(const std::filesystem::path& file, bool (*isRead)(const
     fail("is no glTF: " + excerpt(problem.what()));
   }
   json.erase("buffers");
+  std::vector<tinygltf::Image> images;
+  if (json.contains("images") && json["images"].is_array())
+    for (const Json& image : json["images"]) {
+      tinygltf::Image& known = images.emplace_back();
+      if (!image.is_object()) continue;
+      if (image.contains("uri") && image["uri"].is_string()) known.uri = image["uri"].get<std::string>();
+      if (image.contains("bufferView") && image["bufferView"].is_number_integer())
+        known.bufferView = image["bufferView"].get<int>();
+    }
   json.erase("images");
   const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   json = Json();
@@ -213,6 +243,7 @@ tinygltf::Model readGltf(const std::filesystem::path& file, bool (*isRead)(const
   std::string error, warning;
   const bool loaded = loader.LoadASCIIFromString(&gltf, &error, &warning, text.data(),
                                                  static_cast<unsigned int>(text.size()), std::string());
+  gltf.images = std::move(images);
   for (Bytes& bytes : buffers) gltf.buffers.emplace_back().data = std::move(bytes);
   if (!loaded) fail(error.empty() ? "is no glTF 2 file" : excerpt(error));
   return gltf;

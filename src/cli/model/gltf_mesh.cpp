@@ -1,6 +1,8 @@
 #include "cli/model/gltf_mesh.h"
 
 #include "cli/model/gltf_accessors.h"
+#include "cli/model/gltf_file.h"
+#include "host/picture.h"
 
 #include <glm/vec4.hpp>
 
@@ -94,24 +96,86 @@ bool skin(std::vector<double>& positions, const tinygltf::Model& gltf, const tin
   return any;
 }
 
-/// What alpha does is not looked at but where it is the same everywhere; false: nothing of the primitive is ever seen.
-bool hasSurface(const tinygltf::Primitive& primitive, const tinygltf::Material& material, Remarks& remarks) {
+/// Texture coordinates of a primitive's vertices; empty where it has none.
+std::vector<double> coordinatesOf(const tinygltf::Model& gltf, const tinygltf::Primitive& primitive, int set,
+                                  size_t vertices) {
+  const auto attribute = primitive.attributes.find("TEXCOORD_" + std::to_string(set));
+  if (attribute == primitive.attributes.end()) return {};
+  const tinygltf::Accessor& accessor = accessorOf(gltf, attribute->second);
+  if (accessor.type != TINYGLTF_TYPE_VEC2 || accessor.count != vertices)
+    fail("TEXCOORD_" + std::to_string(set) + " has not two numbers a vertex");
+  return numbersOf(gltf, accessor);
+}
+
+/// What a primitive's alpha means for its draws (glTF 2.0, 3.9.6).
+struct Alpha {
+  bool any = true; ///< false: nothing of it is ever seen
+  uint32_t flags = 0;
+};
+
+Alpha alphaOf(const tinygltf::Primitive& primitive, const tinygltf::Material& material, AlphaTests& tests,
+              Remarks& remarks) {
+  Alpha alpha;
+  const bool blends = material.alphaMode == "BLEND", masks = material.alphaMode == "MASK";
+  if (!blends && !masks) return alpha;
   const auto& base = material.pbrMetallicRoughness;
-  if (material.alphaMode == "BLEND") ++remarks["primitives are blended (alphaMode BLEND) and were taken as opaque"];
-  if (material.alphaMode != "MASK") return true;
-  const bool constant = base.baseColorTexture.index < 0 && !primitive.attributes.contains("COLOR_0");
-  if (constant && base.baseColorFactor.size() == 4 && base.baseColorFactor[3] < material.alphaCutoff) {
-    ++remarks["primitives have less alpha than their alpha test's cutoff (alphaMode MASK) and were left out"];
-    return false;
+  const double factor = base.baseColorFactor.size() == 4 ? base.baseColorFactor[3] : 1;
+  // Of what is blended, what is transparent altogether is not there.
+  const double cutoff = masks ? material.alphaCutoff : 1 / 512.0;
+  if (blends) alpha.flags = GPGP_DRAW_SEE_THROUGH;
+  if (primitive.attributes.contains("COLOR_0"))
+    ++remarks["primitives have colours by vertex, whose alpha was taken as 1"];
+  if (cutoff <= 0) return alpha;
+  if (factor < cutoff) {
+    ++remarks[masks ? "primitives have less alpha than their alpha test's cutoff (alphaMode MASK) and were left out"
+                    : "primitives are transparent altogether (alphaMode BLEND) and were left out"];
+    alpha.any = false;
+  } else if (base.baseColorTexture.index >= 0) {
+    if (base.baseColorTexture.extensions.contains("KHR_texture_transform"))
+      ++remarks["primitives are alpha-tested by a texture that is moved (KHR_texture_transform), which was not done"];
+    alpha.flags |= tests.flagsOf(base.baseColorTexture.index, static_cast<float>(cutoff / factor), remarks);
   }
-  ++remarks["primitives are alpha-tested (alphaMode MASK) and were taken as opaque"];
-  return true;
+  return alpha;
 }
 
 } // namespace
 
+uint32_t AlphaTests::flagsOf(int texture, float cutoff, Remarks& remarks) {
+  constexpr size_t kMostTests = 16;
+  const auto [known, isNew] = known_.try_emplace({texture, cutoff});
+  if (!isNew) return known->second;
+  if (static_cast<size_t>(texture) >= gltf_.textures.size()) fail("a material names no texture");
+  const tinygltf::Texture& from = gltf_.textures[static_cast<size_t>(texture)];
+  if (model_.alphaTests.size() == kMostTests) {
+    ++remarks["textures of alpha tests are beyond the 16 that are read; what they cut was taken as opaque"];
+    return 0;
+  }
+  const host::Picture picture =
+      from.source < 0 ? host::Picture() : host::decodePicture(imageBytes(gltf_, from.source, folder_));
+  if (picture.rgba.empty()) {
+    ++remarks["textures of alpha tests are no PNG or JPEG that can be read; what they cut was taken as opaque"];
+    return 0;
+  }
+  AlphaTexture made;
+  made.width = picture.width, made.height = picture.height, made.cutoff = cutoff;
+  for (size_t i = 3; i < picture.rgba.size(); i += 4) made.alpha.push_back(picture.rgba[i]);
+  if (from.sampler >= 0 && static_cast<size_t>(from.sampler) < gltf_.samplers.size()) {
+    const tinygltf::Sampler& sampler = gltf_.samplers[static_cast<size_t>(from.sampler)];
+    const auto wrapOf = [](int wrap) {
+      return wrap == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? AlphaTexture::Wrap::clamp
+             : wrap == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? AlphaTexture::Wrap::mirror
+                                                             : AlphaTexture::Wrap::repeat;
+    };
+    made.wrapU = wrapOf(sampler.wrapS), made.wrapV = wrapOf(sampler.wrapT);
+    made.linear = sampler.magFilter != TINYGLTF_TEXTURE_FILTER_NEAREST;
+  }
+  known->second = GPGP_DRAW_ALPHA_TEST(static_cast<uint32_t>(model_.alphaTests.size()));
+  model_.alphaTests.push_back(std::move(made));
+  return known->second;
+}
+
 Part addPrimitive(Model& model, const tinygltf::Model& gltf, const tinygltf::Primitive& primitive, const Pose& pose,
-                  Remarks& remarks) {
+                  AlphaTests& alphaTests, Remarks& remarks) {
   Part part;
   GpgpMesh mesh{static_cast<uint32_t>(model.indices.size()), 0, static_cast<uint32_t>(model.positions.size() / 3)};
   const bool isList = primitive.mode == TINYGLTF_MODE_TRIANGLES,
@@ -125,11 +189,15 @@ Part addPrimitive(Model& model, const tinygltf::Model& gltf, const tinygltf::Pri
     ++remarks["primitives have no positions and were left out"];
     return part;
   }
+  int coordinateSet = 0;
   if (primitive.material >= 0) {
     if (static_cast<size_t>(primitive.material) >= gltf.materials.size()) fail("a primitive names no material");
     const tinygltf::Material& material = gltf.materials[static_cast<size_t>(primitive.material)];
     if (material.doubleSided) part.flags = GPGP_DRAW_TWO_SIDED;
-    if (!hasSurface(primitive, material, remarks)) return part;
+    const Alpha alpha = alphaOf(primitive, material, alphaTests, remarks);
+    if (!alpha.any) return part;
+    part.flags |= alpha.flags;
+    coordinateSet = material.pbrMetallicRoughness.baseColorTexture.texCoord;
   }
   if (primitive.extensions.contains("KHR_materials_variants"))
     ++remarks["primitives have variants of their material (KHR_materials_variants); the one without was taken"];
@@ -144,6 +212,12 @@ Part addPrimitive(Model& model, const tinygltf::Model& gltf, const tinygltf::Pri
   if ((model.positions.size() + positions.size()) / 3 > kMostVertices ||
       model.indices.size() + triangles * 3 > UINT32_MAX)
     fail("its meshes have more vertices or indices than a buffer of 4 GiB holds");
+  if (part.flags >> 8) { // alpha-tested
+    const std::vector<double> at = coordinatesOf(gltf, primitive, coordinateSet, positions.size() / 3);
+    if (at.empty()) ++remarks["primitives are alpha-tested but have no texture coordinates, which were taken as 0"];
+    model.coordinates.resize(model.positions.size() / 3 * 2);
+    for (const double coordinate : at) model.coordinates.push_back(static_cast<float>(coordinate));
+  }
   for (const double coordinate : positions) model.positions.push_back(static_cast<float>(coordinate));
   for (size_t t = 0; t < triangles; ++t) { // glTF 2.0, 3.7.2.1
     const std::array<size_t, 3> list{3 * t, 3 * t + 1, 3 * t + 2}, fan{t + 1, t + 2, 0};

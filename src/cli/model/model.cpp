@@ -11,6 +11,25 @@
 
 namespace gpgp::cli {
 
+double AlphaTexture::at(double u, double v) const {
+  const auto placeOf = [](double at, uint32_t size, Wrap wrap) {
+    const auto n = static_cast<int64_t>(size);
+    auto i = static_cast<int64_t>(std::clamp(std::floor(at), -0x1p40, 0x1p40));
+    if (wrap == Wrap::clamp) return static_cast<size_t>(std::clamp<int64_t>(i, 0, n - 1));
+    const int64_t period = wrap == Wrap::mirror ? 2 * n : n;
+    i = (i % period + period) % period;
+    return static_cast<size_t>(i < n ? i : period - 1 - i);
+  };
+  const auto texel = [&](double x, double y) {
+    return alpha[placeOf(y, height, wrapV) * width + placeOf(x, width, wrapU)] / 255.0;
+  };
+  const double x = u * width, y = v * height;
+  if (!linear) return texel(x, y);
+  const double left = x - 0.5, top = y - 0.5, fx = left - std::floor(left), fy = top - std::floor(top);
+  return (texel(left, top) * (1 - fx) + texel(left + 1, top) * fx) * (1 - fy) +
+         (texel(left, top + 1) * (1 - fx) + texel(left + 1, top + 1) * fx) * fy;
+}
+
 uint32_t addMesh(Model& model, const GpgpMesh& mesh) {
   if (mesh.indexCount == 0) return kNoMesh;
   model.meshes.push_back(mesh);

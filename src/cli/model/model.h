@@ -11,8 +11,23 @@
 
 namespace gpgp::cli {
 
+/// The alpha of a texture that an alpha test asks.
+struct AlphaTexture {
+  uint32_t width = 0, height = 0;
+  std::vector<uint8_t> alpha; ///< rows from the top
+  float cutoff = 0.5f;
+  bool linear = true;
+  enum class Wrap : uint8_t { repeat, mirror, clamp };
+  Wrap wrapU = Wrap::repeat, wrapV = Wrap::repeat;
+
+  /// At level 0, in double precision.
+  double at(double u, double v) const;
+};
+
 struct Model {
-  std::vector<float> positions; ///< x, y, z
+  std::vector<float> positions;         ///< x, y, z
+  std::vector<float> coordinates;       ///< texture coordinates by vertex; empty, or shorter: 0
+  std::vector<AlphaTexture> alphaTests; ///< of draws that have GPGP_DRAW_ALPHA_TEST
   std::vector<uint32_t> indices;
   std::vector<GpgpMesh> meshes;
   std::vector<GpgpVisibilityDraw> draws; ///< triangles numbered one draw after the other

@@ -90,7 +90,8 @@ std::vector<glm::dmat4> instancesOf(const tinygltf::Model& gltf, const tinygltf:
 
 class Reader {
 public:
-  Reader(Model& model, const tinygltf::Model& gltf) : model_(model), gltf_(gltf), parents_(gltf.nodes.size(), -1) {
+  Reader(Model& model, const tinygltf::Model& gltf, const std::filesystem::path& folder)
+      : model_(model), gltf_(gltf), alphaTests_(model, gltf, folder), parents_(gltf.nodes.size(), -1) {
     for (size_t node = 0; node < gltf.nodes.size(); ++node)
       for (const int child : gltf.nodes[node].children)
         if (child >= 0 && static_cast<size_t>(child) < parents_.size())
@@ -154,7 +155,7 @@ private:
       const std::vector<glm::dmat4> joints = pose.skinned ? jointsOf(node.skin) : std::vector<glm::dmat4>();
       pose.joints = joints;
       for (const tinygltf::Primitive& primitive : mesh.primitives)
-        known->second.push_back(addPrimitive(model_, gltf_, primitive, pose, remarks_));
+        known->second.push_back(addPrimitive(model_, gltf_, primitive, pose, alphaTests_, remarks_));
     }
     // The transform of a skinned mesh's node moves nothing (3.7.3.3).
     for (const glm::dmat4& instance : instancesOf(gltf_, node)) {
@@ -198,6 +199,7 @@ private:
 
   Model& model_;
   const tinygltf::Model& gltf_;
+  AlphaTests alphaTests_;
   std::vector<int> parents_;
   std::map<std::tuple<int, int, std::vector<double>>, std::vector<Part>> parts_; // by mesh, skin, weights
   Remarks remarks_;
@@ -209,7 +211,7 @@ Model loadGltf(const std::filesystem::path& file) {
   Model model;
   try {
     const tinygltf::Model gltf = readGltf(file, isRead);
-    Reader reader(model, gltf);
+    Reader reader(model, gltf, file.parent_path());
     reader.readScene();
     reader.writeNotes();
   } catch (const std::runtime_error& problem) {

@@ -55,8 +55,13 @@ Reference referenceOf(SampledModel& scene, const VisibilityOptions& options, con
     reference.areas = scene.sizes();
     return reference;
   }
-  visibility::RayReference rays({model.positions, model.indices, model.meshes, model.draws, model.triangleCount},
-                                [](size_t count, const auto& work) { onAllProcessors(count, work); });
+  const auto passesAlpha = [&model](uint32_t test, glm::dvec2 place) {
+    const AlphaTexture& texture = model.alphaTests[test];
+    return texture.at(place.x, place.y) >= static_cast<double>(texture.cutoff);
+  };
+  visibility::RayReference rays(
+      {model.positions, model.indices, model.meshes, model.draws, model.triangleCount, model.coordinates, passesAlpha},
+      [](size_t count, const auto& work) { onAllProcessors(count, work); });
   for (size_t view = 0; view < views.size(); ++view) {
     GpgpCamera camera{};
     std::copy_n(&views[view].camera[0][0], 16, camera.viewProjection);

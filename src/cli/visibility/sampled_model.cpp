@@ -8,8 +8,37 @@
 
 namespace gpgp::cli {
 
+AlphaTestTextures::AlphaTestTextures(host::HeadlessDevice& device, const std::vector<AlphaTexture>& textures)
+    : device_(device) {
+  for (const AlphaTexture& texture : textures) {
+    VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+    info.magFilter = info.minFilter = texture.linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+    const auto modeOf = [](AlphaTexture::Wrap wrap) {
+      return wrap == AlphaTexture::Wrap::clamp    ? VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE
+             : wrap == AlphaTexture::Wrap::mirror ? VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT
+                                                  : VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    };
+    info.addressModeU = modeOf(texture.wrapU), info.addressModeV = modeOf(texture.wrapV);
+    host::check(device.vk().vkCreateSampler(device.device(), &info, nullptr, &samplers_.emplace_back()),
+                "vkCreateSampler");
+    const host::Image& image = images_.emplace_back(device, host::ImageInfo{.format = VK_FORMAT_R8G8B8A8_UNORM,
+                                                                            .width = texture.width,
+                                                                            .height = texture.height,
+                                                                            .usage = VK_IMAGE_USAGE_SAMPLED_BIT});
+    std::vector<uint8_t> pixels(texture.alpha.size() * 4);
+    for (size_t i = 0; i < texture.alpha.size(); ++i) pixels[i * 4 + 3] = texture.alpha[i];
+    host::uploadImage(device, image, pixels, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    tests_.push_back({image.view(), samplers_.back(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, texture.cutoff, 0});
+  }
+}
+
+AlphaTestTextures::~AlphaTestTextures() {
+  for (const VkSampler sampler : samplers_) device_.vk().vkDestroySampler(device_.device(), sampler, nullptr);
+}
+
 SampledModel::SampledModel(Session& session, const VisibilityOptions& options, const Model& model)
-    : session_(session), options_(options), model_(model), words_((model.triangleCount + 31) / 32) {
+    : session_(session), options_(options), model_(model), words_((model.triangleCount + 31) / 32),
+      textures_(session.device(), model.alphaTests) {
   GpgpGeometrySetCreateInfo info = GPGP_GEOMETRY_SET_CREATE_INFO_INIT;
   info.label = options.model.c_str();
   info.meshes = model.meshes.data();
@@ -19,6 +48,10 @@ SampledModel::SampledModel(Session& session, const VisibilityOptions& options, c
   host::HeadlessDevice& device = session.device();
   constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   positions_ = host::makeBuffer(device, model.positions, kStorage, "positions");
+  if (!model.alphaTests.empty())
+    coordinates_ = host::makeBuffer(device, model.coordinates, kStorage, "texture coordinates");
+  for (const GpgpVisibilityDraw& draw : model.draws)
+    if (draw.flags & ~(GPGP_DRAW_TWO_SIDED | GPGP_DRAW_CLOCKWISE)) nonOpaque_ += model.meshes[draw.mesh].indexCount / 3;
   indices_ = host::makeBuffer(device, model.indices, kStorage, "indices");
   draws_ = host::makeBuffer(device, model.draws, kStorage, "draws");
   bits_ = host::Buffer(device, VkDeviceSize{words_} * 4, kStorage, host::Memory::device, "visible bits");
@@ -52,6 +85,7 @@ VisibilityRecorder SampledModel::recorder(GpgpSamplingMethod method, uint32_t ma
   info.maxTriangles = model_.triangleCount;
   info.methods = 1u << method;
   info.maxSamples = maxSamples;
+  info.maxNonOpaque = nonOpaque_;
   info.maxCandidates = maxCandidates();
   info.maxPairs = maxPairs(largest);
   const Progress progress("making pipelines");
@@ -97,6 +131,9 @@ Measured<GpgpVisibilityReport> SampledModel::sample(VisibilityRecorder& recorder
                             }
                             info.positions = positions_.range();
                             info.positionStride = 12;
+                            info.alphaTests = textures_.tests().data();
+                            info.alphaTestCount = static_cast<uint32_t>(textures_.tests().size());
+                            if (info.alphaTestCount) info.textureCoordinates = coordinates_.range();
                             info.indices = indices_.range();
                             info.indexType = VK_INDEX_TYPE_UINT32;
                             info.draws = draws_.range();

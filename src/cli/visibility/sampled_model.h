@@ -7,6 +7,22 @@
 
 namespace gpgp::cli {
 
+/// Textures of a model's alpha tests on the device.
+class AlphaTestTextures {
+public:
+  AlphaTestTextures(host::HeadlessDevice& device, const std::vector<AlphaTexture>& textures);
+  ~AlphaTestTextures();
+  AlphaTestTextures(const AlphaTestTextures&) = delete;
+  AlphaTestTextures& operator=(const AlphaTestTextures&) = delete;
+  const std::vector<GpgpAlphaTest>& tests() const { return tests_; }
+
+private:
+  host::HeadlessDevice& device_;
+  std::vector<host::Image> images_;
+  std::vector<VkSampler> samplers_;
+  std::vector<GpgpAlphaTest> tests_;
+};
+
 class SampledModel {
 public:
   /// The options and the model must outlive it.
@@ -49,6 +65,9 @@ private:
   uint32_t words_;
   GeometrySet geometry_;
   host::Buffer positions_, indices_, draws_, bits_, sizes_, list_, count_;
+  host::Buffer coordinates_; // of alpha tests
+  AlphaTestTextures textures_;
+  uint32_t nonOpaque_ = 0;     // triangles of alpha-tested and see-through draws
   host::Buffer triangleSizes_; // with options.atlas
 };
 

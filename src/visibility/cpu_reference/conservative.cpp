@@ -26,7 +26,7 @@ struct Sampling {
   explicit Sampling(const CpuInput& input) : in(input), params(input.params) {
     forEachTriangle(in, [&](const DrawEntry& e, uint32_t local, uint32_t item) {
       uint32_t id = 0;
-      if (!numberOf(in, e, local, id)) return;
+      if (!isSampled(in, e) || !numberOf(in, e, local, id)) return;
       Placed p{placeTriangle(in, e, local), id, item, {}, gridOf(params, e.camera), false};
       if (p.made.pieces.empty()) return;
       p.normal = normalOf(p.made.world[0], p.made.world[1], p.made.world[2]);
@@ -144,6 +144,7 @@ CpuResult sampleConservativelyOnCpu(const CpuInput& input, uint32_t refinements)
   const Sampling sampling(in);
   const std::vector<Surface> found = sampling.surfaces(out);
   gather(in, out);
+  showThrough(in, out);
   sampling.accept(out, found);
   std::vector<uvec2> covered(out.ids.size(), uvec2(0, 0));
   for (uint32_t i = 0; i < refinements; ++i) sampling.refine(out, covered);

@@ -3,6 +3,7 @@
 // Guarantees: ids, depth, bits and counts equal the GPU's bit for bit. For tests and tools; never part of the library.
 #pragma once
 #include "visibility/shared/layout.h"
+#include "visibility/shared/texture.h"
 #include "visibility/shared/triangle.h"
 
 #include <functional>
@@ -18,8 +19,11 @@ struct CpuInput {
   std::span<const uint32_t> indices;   ///< 16-bit indices: two a word
   std::span<const shader::Draw> draws;
   std::span<const shader::Mesh> meshes;
-  std::span<const uint32_t> commands;     ///< params.commandWords each
-  std::span<const uint32_t> numbers;      ///< with params.hasNumbers: triangles' numbers
+  std::span<const uint32_t> commands;    ///< params.commandWords each
+  std::span<const uint32_t> numbers;     ///< with params.hasNumbers: triangles' numbers
+  std::span<const uint32_t> coordinates; ///< texture coordinates, as params say
+  /// The alpha of a test's texture at a place.
+  std::function<float(uint32_t test, glm::vec2 place)> alphaAt;
   uint32_t drawCount = UINT32_MAX;        ///< what the buffer of the draw or command count holds
   std::span<const uint32_t> previousBits; ///< the history's, empty at its first recording
 };
@@ -28,6 +32,7 @@ struct CpuResult {
   std::vector<uint32_t> depth, ids; ///< a word a pixel, rows from the top
   std::vector<uint32_t> bits;
   std::vector<uint32_t> list;          ///< every visible triangle, ascending; no budget
+  std::vector<uint32_t> changed;       ///< that appeared, then that disappeared, each ascending
   std::vector<uint32_t> sizes;         ///< samples per triangle
   std::vector<uint32_t> drawCommands;  ///< 5 words a draw; no budget
   std::vector<uint32_t> drawIndices;   ///< of each draw's triangles, ascending
@@ -41,6 +46,7 @@ struct CpuTriangle {
   uint32_t fate = shader::kOutside;
   std::vector<shader::ScreenTriangle> pieces;
   glm::vec3 world[3] = {};
+  glm::vec4 clip[3] = {};
   std::vector<glm::vec3> depths; ///< of each piece's corners, as conservative sampling interpolates them
 };
 CpuTriangle placeTriangle(const CpuInput& input, const shader::DrawEntry& entry, uint32_t localTriangle);
@@ -57,6 +63,23 @@ struct CpuEntries {
 };
 /// The draw table: the draws of all cameras.
 std::vector<shader::DrawEntry> entriesOf(const CpuInput& input, CpuEntries& about);
+/// Whether a camera samples a draw's entry.
+bool isSampled(const CpuInput& input, const shader::DrawEntry& entry);
+/// Where a vertex lies; false where an index or the vertex that it names lies outside its range.
+bool fetchPlace(const CpuInput& input, const shader::DrawEntry& entry, uint32_t index, uint32_t& vertex);
+
+/// Of a triangle that is not opaque.
+struct CpuNonOpaque {
+  uint32_t flags = 0;
+  shader::TexturePlane plane{};
+};
+CpuNonOpaque nonOpaqueOf(const CpuInput& input, const shader::DrawEntry& entry, uint32_t localTriangle,
+                         const CpuTriangle& placed);
+/// Whether it is there at a point in units.
+bool passesAlpha(const CpuInput& input, const CpuNonOpaque& triangle, glm::ivec2 point);
+/// Once depths are there: samples that show triangles which hide nothing.
+void showThrough(const CpuInput& input, CpuResult& result);
+
 /// All work items up to the budget: entry, triangle of it, item.
 void forEachTriangle(const CpuInput& input,
                      const std::function<void(const shader::DrawEntry&, uint32_t, uint32_t)>& visit);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <memory>
 #include <span>
 #include <tuple>
 
@@ -23,6 +24,12 @@ void clearLists(CpuResult& out) {
   out.counters.appeared = out.counters.disappeared = 0;
 }
 
+/// What lies behind a candidate that is not opaque.
+struct Open {
+  const CpuInput* in = nullptr;
+  CpuNonOpaque triangle;
+};
+
 /// An entry of a list within its pixel.
 struct Placed {
   const Candidate* candidate;
@@ -30,7 +37,28 @@ struct Placed {
   uint32_t begin, end; ///< of the nearest and the farthest that it may come
   Outline outline;
   Facet facet;
+  const Open* open = nullptr; ///< null: it is opaque
+  ivec2 pixel = ivec2(0, 0);
 };
+/// Of a row's samples, those at which the texture lets an entry be.
+uvec2 tested(const Placed& p, uvec2 asked, int row) {
+  if (!p.open || !alphaTestOf(p.open->triangle.flags)) return asked;
+  uvec2 passed(0, 0);
+  for (int column = 0; column < 64; ++column) {
+    const uint32_t bit = 1u << (column & 31);
+    uint32_t& word = column < 32 ? passed.x : passed.y;
+    if ((column < 32 ? asked.x : asked.y) & bit &&
+        passesAlpha(*p.open->in, p.open->triangle, p.pixel * 256 + ivec2(column * 4 + 2, row * 4 + 2)))
+      word |= bit;
+  }
+  return passed;
+}
+bool hidesNothing(const Placed& p) { return p.open && isSeeThrough(p.open->triangle.flags); }
+uvec2 ownAmong(const Placed& p, uvec2 asked, int row) {
+  uvec2 own = samplesIn(p.outline, row);
+  own.x &= asked.x, own.y &= asked.y;
+  return tested(p, own, row);
+}
 /// Entries of a list that are decided together.
 using Batch = std::span<const Placed>;
 /// Samples of a pixel, by row.
@@ -52,16 +80,17 @@ bool isAhead(Batch batch, size_t place, const Samples& samples, const std::vecto
   std::vector<std::pair<const Placed*, Crossing>> rivals;
   for (size_t j = 0; j < batch.size(); ++j) {
     const Placed& other = batch[j];
-    if (j == place || !decides[j] || other.facet.nearest > own.facet.farthest) continue;
+    if (j == place || !decides[j] || hidesNothing(other) || other.facet.nearest > own.facet.farthest) continue;
     if (!(leadWithin(other.facet, own.facet) >= 0) || !mayOverlap(other, own)) continue;
     rivals.emplace_back(&other, crossingOf(other.facet, own.facet, other.candidate->id < own.candidate->id));
   }
   for (int row = 0; row < 64; ++row) {
     const uvec2 open = samples[static_cast<size_t>(row)];
-    uvec2 rest = samplesIn(own.outline, row);
-    rest.x &= open.x, rest.y &= open.y;
+    uvec2 rest = ownAmong(own, open, row);
     for (const auto& [rival, crossing] : rivals) {
-      const uvec2 ahead = samplesAhead(rival->outline, crossing, row);
+      uvec2 ahead = samplesAhead(rival->outline, crossing, row);
+      ahead.x &= rest.x, ahead.y &= rest.y;
+      ahead = tested(*rival, ahead, row);
       rest.x &= ~ahead.x, rest.y &= ~ahead.y;
     }
     if (rest.x | rest.y) return true;
@@ -119,10 +148,15 @@ Looked resolveBatch(Batch batch, uint32_t nearest, size_t before, Samples& open,
     const int parallax = parallaxOf(depthScale, nearest, batch[i].key, static_cast<uint32_t>(before + i), reversed);
     for (int row = 0; row < 64; ++row) {
       uvec2& rest = open[static_cast<size_t>(row)];
-      const uvec2 own = samplesIn(batch[i].outline, row);
-      const uvec2 shown = parallax ? samplesAround(batch[i].outline, parallax, row) : own;
-      if ((shown.x & rest.x) | (shown.y & rest.y)) seen[i] = true;
-      rest.x &= ~own.x, rest.y &= ~own.y;
+      const uvec2 own = ownAmong(batch[i], rest, row);
+      uvec2 shown = own;
+      if (parallax) {
+        shown = samplesAround(batch[i].outline, parallax, row);
+        shown.x &= rest.x, shown.y &= rest.y;
+        shown = tested(batch[i], shown, row);
+      }
+      if (shown.x | shown.y) seen[i] = true;
+      if (!hidesNothing(batch[i])) rest.x &= ~own.x, rest.y &= ~own.y;
       holes = holes || (rest.x | rest.y);
     }
   }
@@ -149,17 +183,17 @@ void sortBatch(std::vector<Placed>& batch) {
 }
 
 void close(Samples& open, const Placed& p) {
-  for (int row = 0; row < 64; ++row) {
-    const uvec2 own = samplesIn(p.outline, row);
+  for (int row = 0; row < 64 && !hidesNothing(p); ++row) {
     uvec2& rest = open[static_cast<size_t>(row)];
+    const uvec2 own = ownAmong(p, rest, row);
     rest.x &= ~own.x, rest.y &= ~own.y;
   }
 }
 
 bool hasAny(const Placed& p, const Samples& samples) {
   for (int row = 0; row < 64; ++row) {
-    const uvec2 own = samplesIn(p.outline, row), some = samples[static_cast<size_t>(row)];
-    if ((own.x & some.x) | (own.y & some.y)) return true;
+    const uvec2 own = ownAmong(p, samples[static_cast<size_t>(row)], row);
+    if (own.x | own.y) return true;
   }
   return false;
 }
@@ -229,7 +263,7 @@ uint32_t resolveLong(std::vector<Placed> list, vec4 depthScale, bool reversed, s
     const Looked looked = resolveBatch(batch, nearest, before, left, depthScale, reversed);
     std::vector<Placed> going;
     for (size_t i = 0; i < batch.size(); ++i) {
-      if (looked.seen[i] && batch[i].end >= next) going.push_back(batch[i]);
+      if (looked.seen[i] && batch[i].end >= next && !hidesNothing(batch[i])) going.push_back(batch[i]);
       if (looked.visible[i]) show(batch[i]);
       if (looked.seen[i] || batch[i].begin > doubt || !hasAny(batch[i], doubted)) continue;
       show(batch[i]), ++unresolved;
@@ -239,8 +273,8 @@ uint32_t resolveLong(std::vector<Placed> list, vec4 depthScale, bool reversed, s
     for (const Placed& p : takeForced(going)) {
       doubt = std::max(doubt, p.end - 1);
       for (size_t row = 0; row < 64; ++row) {
-        const uvec2 own = samplesIn(p.outline, static_cast<int>(row));
-        doubted[row].x |= own.x & open[row].x, doubted[row].y |= own.y & open[row].y;
+        const uvec2 own = ownAmong(p, open[row], static_cast<int>(row));
+        doubted[row].x |= own.x, doubted[row].y |= own.y;
       }
       close(open, p);
     }
@@ -261,8 +295,8 @@ uint32_t resolveLong(std::vector<Placed> list, vec4 depthScale, bool reversed, s
 }
 
 /// Decides a list, front to back until all samples are covered; returns how many of it are not decided.
-uint32_t resolve(const std::vector<Candidate>& candidates, const List& list, ivec2 pixel, bool reversed,
-                 vec4 depthScale, std::vector<uint32_t>& bits) {
+uint32_t resolve(const std::vector<Candidate>& candidates, const std::vector<const Open*>& opens, const List& list,
+                 ivec2 pixel, bool reversed, vec4 depthScale, std::vector<uint32_t>& bits) {
   if (list.empty()) return 0;
   std::vector<Placed> placed;
   for (const uint32_t index : list) {
@@ -271,7 +305,8 @@ uint32_t resolve(const std::vector<Candidate>& candidates, const List& list, ive
     const Footing footing = footingOf(t, isCompact(t), pixel);
     const Outline outline = outlineOf(c, pixel);
     placed.push_back({&c, middleKey(c, outline, footing, pixel, reversed), nearestKey(t, footing, reversed),
-                      farthestKey(t, footing, reversed), outline, facetOf(c, footing, pixel, reversed)});
+                      farthestKey(t, footing, reversed), outline, facetOf(c, footing, pixel, reversed), opens[index],
+                      pixel});
   }
   if (placed.size() > kBatch) return resolveLong(std::move(placed), depthScale, reversed, bits);
   sortBatch(placed);
@@ -301,24 +336,30 @@ CpuResult sampleExactOnCpu(CpuInput in) {
     ivec4 bounds;
     uint32_t id;
     bool shared, seen; // by several invocations
+    std::shared_ptr<const Open> open;
   };
   std::vector<Piece> pieces;
   forEachTriangle(in, [&](const DrawEntry& e, uint32_t local, uint32_t) {
     uint32_t id = 0;
-    if (!numberOf(in, e, local, id)) return;
+    if (!isSampled(in, e) || !numberOf(in, e, local, id)) return;
     const CpuTriangle placed = placeTriangle(in, e, local);
+    std::shared_ptr<const Open> open;
+    if (isNonOpaque(in.draws[e.draw].flags)) {
+      if (!params.maxNonOpaque) return;
+      open = std::make_shared<Open>(Open{&in, nonOpaqueOf(in, e, local, placed)});
+    }
     for (const ScreenTriangle& t : placed.pieces) {
       const ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(params, e.camera));
       if (bounds.x < bounds.z && bounds.y < bounds.w)
         pieces.push_back({t, bounds, id, placed.fate == kClipped || bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8,
-                          (standard[id / 32] >> (id % 32) & 1) != 0});
+                          (standard[id / 32] >> (id % 32) & 1) != 0, open});
     }
   });
 
   std::vector<uint32_t> limits(out.depth.size(), kFarthest);
   const Grid grid = gridOf(params);
   for (const Piece& piece : pieces)
-    for (int y = piece.bounds.y; y < piece.bounds.w; ++y)
+    for (int y = piece.bounds.y; y < piece.bounds.w && !piece.open; ++y)
       for (int x = piece.bounds.x; x < piece.bounds.z; ++x) {
         const ivec2 pixel(x, y), point = samplePoint(pixel, grid);
         if (fillsPixel(piece.triangle, pixel, grid))
@@ -327,6 +368,7 @@ CpuResult sampleExactOnCpu(CpuInput in) {
       }
 
   std::vector<Candidate> candidates;
+  std::vector<const Open*> opens; // by candidate
   std::vector<List> lists(out.depth.size());
   std::vector<bool> open;
   for (const bool seen : {false, true}) {
@@ -335,6 +377,7 @@ CpuResult sampleExactOnCpu(CpuInput in) {
     for (const Piece& piece : pieces) {
       const ScreenTriangle& t = piece.triangle;
       if (piece.seen != seen) continue;
+      if (seen && !piece.shared && piece.open && isSeeThrough(piece.open->triangle.flags)) continue;
       const auto index = static_cast<uint32_t>(candidates.size());
       bool mayShow = false;
       for (int y = piece.bounds.y; y < piece.bounds.w; ++y)
@@ -348,7 +391,11 @@ CpuResult sampleExactOnCpu(CpuInput in) {
           lists[at(pixel)].push_back(index);
           ++out.counters.pairs;
         }
-      if (mayShow || piece.shared || seen) candidates.push_back(makeCandidate(t, piece.id));
+      if (!mayShow && !piece.shared && !seen) continue;
+      for (int room = piece.open ? 2 : 1; room > 0; --room) {
+        candidates.push_back(makeCandidate(t, piece.id));
+        opens.push_back(piece.open.get());
+      }
     }
   }
   out.counters.candidates = static_cast<uint32_t>(candidates.size());
@@ -356,8 +403,8 @@ CpuResult sampleExactOnCpu(CpuInput in) {
   for (int y = 0; y < height; ++y) {
     const float* s = params.depthScales + static_cast<uint32_t>(y) / params.height * 4;
     for (int x = 0; x < width; ++x)
-      out.counters.unresolved +=
-          resolve(candidates, lists[at(ivec2(x, y))], ivec2(x, y), reversed, vec4(s[0], s[1], s[2], s[3]), out.bits);
+      out.counters.unresolved += resolve(candidates, opens, lists[at(ivec2(x, y))], ivec2(x, y), reversed,
+                                         vec4(s[0], s[1], s[2], s[3]), out.bits);
   }
   out.ids.clear();
   finish(in, out);
@@ -375,8 +422,7 @@ CpuResult referenceOnCpu(CpuInput in, uint32_t samples, std::vector<uint32_t>& s
     in.params.gridX = centre ? 128 : slice % perSide * part + part / 2;
     in.params.gridY = centre ? 128 : slice / perSide * part + part / 2;
     CpuResult one = sampleOnCpu(in);
-    for (const uint32_t id : one.ids)
-      if (id != kNoTriangle) ++sizes[id];
+    for (size_t id = 0; id < sizes.size(); ++id) sizes[id] += one.sizes[id];
     if (slice == 0)
       all = one;
     else

@@ -57,7 +57,7 @@ CpuResult sampleNearbyOnCpu(const CpuInput& in) {
   const std::vector<Tile> tiles = tilesOf(in.params, out.depth);
   forEachTriangle(in, [&](const DrawEntry& e, uint32_t local, uint32_t) {
     uint32_t id = 0;
-    if (!numberOf(in, e, local, id)) return;
+    if (!isSampled(in, e) || !numberOf(in, e, local, id)) return;
     const CpuTriangle placed = placeTriangle(in, e, local);
     const bool clipped = placed.fate == kClipped;
     bool shown = clipped || placed.fate == kWhole;

@@ -3,16 +3,15 @@
 
 #include "visibility/conservative/conservative.h"
 #include "visibility/outputs/extent.h"
+#include "visibility/shared/candidate.h"
 #include "visibility/shared/position.h"
 
 #include <algorithm>
 #include <bit>
 
 namespace gpgp::visibility {
-namespace {
 using namespace shader;
 
-/// False where an index or the vertex that it names lies outside its range.
 bool fetchPlace(const CpuInput& in, const DrawEntry& e, uint32_t index, uint32_t& vertex) {
   const Params& params = in.params;
   if (index >= params.indexCount) return false;
@@ -24,6 +23,7 @@ bool fetchPlace(const CpuInput& in, const DrawEntry& e, uint32_t index, uint32_t
   return place >= 0 && place < params.vertexCount;
 }
 
+namespace {
 bool fetchVertex(const CpuInput& in, const DrawEntry& e, uint32_t index, vec3& position) {
   const Params& params = in.params;
   uint32_t vertex = 0;
@@ -44,7 +44,8 @@ bool fetchVertex(const CpuInput& in, const DrawEntry& e, uint32_t index, vec3& p
 /// Whether a triangle of a draw has three numbers of indices below 2^32.
 bool hasIndices(const DrawEntry& e, uint32_t local) { return uint64_t(e.firstIndex) + local * 3ull + 2 <= UINT32_MAX; }
 
-void draw(CpuResult& out, const Params& params, const ScreenTriangle& t, uint32_t id) {
+void draw(CpuResult& out, const CpuInput& in, const ScreenTriangle& t, uint32_t id, const CpuNonOpaque* open) {
+  const Params& params = in.params;
   const Grid grid = gridOf(params);
   const auto width = static_cast<size_t>(samplesOf(grid).x);
   const int margin = marginOf(t, grid.margin);
@@ -52,6 +53,7 @@ void draw(CpuResult& out, const Params& params, const ScreenTriangle& t, uint32_
     for (int x = t.bounds.x; x < t.bounds.z; ++x) {
       const ivec2 point = samplePoint(ivec2(x, y), grid);
       if (!coversWide(t, margin, point)) continue;
+      if (open && !passesAlpha(in, *open, point)) continue;
       const uint32_t key = depthKey(depthWide(t, point), params.reversedDepth != 0);
       const size_t at = size_t(y) * width + static_cast<size_t>(x);
       if (key < out.depth[at])
@@ -118,6 +120,10 @@ void forEachTriangle(const CpuInput& in, const std::function<void(const DrawEntr
   }
 }
 
+bool isSampled(const CpuInput& in, const DrawEntry& e) {
+  return isSampledBy(in.draws[e.draw].flags, in.params.cameraLayers[e.camera]);
+}
+
 bool numberOf(const CpuInput& in, const DrawEntry& e, uint32_t local, uint32_t& id) {
   const uint32_t first = in.draws[e.draw].firstTriangle;
   id = first + local;
@@ -136,6 +142,10 @@ CpuTriangle placeTriangle(const CpuInput& in, const Draw& draw, uint32_t localTr
 
 CpuTriangle placeTriangle(const CpuInput& in, const DrawEntry& entry, uint32_t localTriangle) {
   CpuTriangle result;
+  if (alphaTestOf(in.draws[entry.draw].flags) > in.params.alphaTestCount) {
+    result.fate = kSkipped;
+    return result;
+  }
   if (in.params.originCount && in.draws[entry.draw].origin >= in.params.originCount) {
     result.fate = kSkipped;
     return result;
@@ -164,6 +174,7 @@ CpuTriangle placeTriangle(const CpuInput& in, const DrawEntry& entry, uint32_t l
     result.world[i] = transformToWorld(draw, position);
     clip[i] = transformToClip(viewProjection, result.world[i]);
   }
+  std::copy_n(clip, 3, result.clip);
   const Grid grid = gridOf(in.params, entry.camera);
   const bool mirrored = turnsFaces(draw), twoSided = (draw.flags & kTwoSided) != 0;
   ScreenTriangle triangle;
@@ -194,10 +205,11 @@ void listDraws(const CpuInput& in, CpuResult& out) {
   };
   for (uint32_t i = 0; i < about.given; ++i) {
     const DrawEntry& e = entries[i];
+    const bool listed = isSampledBy(in.draws[e.draw].flags, in.params.allLayers);
     const auto first = static_cast<uint32_t>(out.drawTriangles.size());
     for (uint32_t local = 0; local < e.indexCount / 3; ++local) {
       uint32_t id = 0;
-      if (!numberOf(in, e, local, id) || !isSeen(id) || !hasIndices(e, local)) continue;
+      if (!listed || !numberOf(in, e, local, id) || !isSeen(id) || !hasIndices(e, local)) continue;
       uint32_t vertex = 0, corner[3];
       bool valid = true;
       for (uint32_t k = 0; k < 3; ++k) {
@@ -221,7 +233,7 @@ void listDraws(const CpuInput& in, CpuResult& out) {
   out.extents.assign(size_t(in.params.triangleCount) * 3, 0);
   forEachTriangle(in, [&](const DrawEntry& e, uint32_t local, uint32_t) {
     uint32_t id = 0;
-    if (!numberOf(in, e, local, id) || !isSeen(id)) return;
+    if (!isSampled(in, e) || !numberOf(in, e, local, id) || !isSeen(id)) return;
     Extent extent = noExtent();
     for (const ScreenTriangle& t : placeTriangle(in, e, local).pieces) extent = withPiece(extent, t);
     const uvec3 bits = extentBits(extent);
@@ -253,12 +265,21 @@ void finish(const CpuInput& in, CpuResult& out) {
   counters.visible = static_cast<uint32_t>(out.list.size());
   counters.hasList = params.hasList;
   counters.listed = std::min(counters.visible, params.listCapacity);
+  std::vector<uint32_t> gone;
+  out.changed.clear();
+  const auto add = [](std::vector<uint32_t>& list, size_t word, uint32_t rest) {
+    for (; rest; rest &= rest - 1)
+      list.push_back(static_cast<uint32_t>(word * 32) + static_cast<uint32_t>(std::countr_zero(rest)));
+  };
   for (size_t word = 0; params.viewWords && word < std::max(out.bits.size(), in.previousBits.size()); ++word) {
     const uint32_t now = word < out.bits.size() ? out.bits[word] : 0;
     const uint32_t before = word < in.previousBits.size() ? in.previousBits[word] : 0;
     counters.appeared += static_cast<uint32_t>(std::popcount(now & ~before));
     counters.disappeared += static_cast<uint32_t>(std::popcount(before & ~now));
+    add(out.changed, word, now & ~before);
+    add(gone, word, before & ~now);
   }
+  out.changed.insert(out.changed.end(), gone.begin(), gone.end());
 }
 
 CpuResult sampleOnCpu(const CpuInput& in) {
@@ -273,6 +294,7 @@ CpuResult sampleOnCpu(const CpuInput& in) {
 
   forEachTriangle(in, [&](const DrawEntry& e, uint32_t local, uint32_t item) {
     uint32_t id = 0;
+    if (!isSampled(in, e)) return;
     if (!numberOf(in, e, local, id)) {
       ++counters.skippedTriangles;
       return;
@@ -280,8 +302,20 @@ CpuResult sampleOnCpu(const CpuInput& in) {
     const CpuTriangle placed = placeTriangle(in, e, local);
     counters.skippedTriangles += placed.fate == kSkipped;
     counters.triangles += placed.fate == kWhole || placed.fate == kClipped;
+    const uint32_t flags = in.draws[e.draw].flags;
+    if (isNonOpaque(flags)) {
+      bool reaches = placed.fate == kClipped;
+      for (const ScreenTriangle& piece : placed.pieces) {
+        const ivec4 b = pixelBounds(piece.p0, piece.p1, piece.p2, gridOf(params, e.camera));
+        reaches = reaches || !isEmpty(piece) || (params.method == kExact && b.x < b.z && b.y < b.w);
+      }
+      counters.nonOpaque += reaches;
+      if (reaches && !params.maxNonOpaque) out.bits[id / 32] |= 1u << (id % 32);
+      if (!params.maxNonOpaque || isSeeThrough(flags)) return;
+    }
+    const CpuNonOpaque open = isNonOpaque(flags) ? nonOpaqueOf(in, e, local, placed) : CpuNonOpaque();
     for (const ScreenTriangle& piece : placed.pieces)
-      draw(out, params, piece, params.method == kConservative ? item : id);
+      draw(out, in, piece, params.method == kConservative ? item : id, isNonOpaque(flags) ? &open : nullptr);
   });
   CpuEntries about;
   entriesOf(in, about);
@@ -290,6 +324,7 @@ CpuResult sampleOnCpu(const CpuInput& in) {
   if (params.method == kConservative) return out;
 
   gather(in, out);
+  showThrough(in, out);
   finish(in, out);
   return out;
 }

@@ -44,6 +44,7 @@ Lattice latticeOf(const GpgpCamera& camera, uint32_t width, uint32_t height, uin
 struct Corner {
   glm::dvec2 at;
   double nearness;
+  glm::dvec3 texture; ///< coordinates, and 1, over w
 };
 
 /// What is left of a triangle between the near and the far plane, a fan of triangles.
@@ -53,16 +54,24 @@ struct Polygon {
   double rim = 0; ///< in points
 };
 
+struct Clipped {
+  glm::dvec4 p;
+  glm::dvec2 coordinates;
+};
+Clipped between(const Clipped& a, const Clipped& b, double part) {
+  return {a.p + (b.p - a.p) * part, a.coordinates + (b.coordinates - a.coordinates) * part};
+}
+
 /// Sutherland and Hodgman, from the inner to the outer corner, so that neighbours cut a common edge at one point.
-template <class Distance> int clip(std::array<glm::dvec4, 5>& corners, int count, const Distance& distance) {
-  std::array<glm::dvec4, 5> kept;
+template <class Distance> int clip(std::array<Clipped, 5>& corners, int count, const Distance& distance) {
+  std::array<Clipped, 5> kept;
   int number = 0;
   for (int i = 0; i < count; ++i) {
-    const glm::dvec4 &a = corners[static_cast<size_t>(i)], &b = corners[static_cast<size_t>((i + 1) % count)];
-    const double da = distance(a), db = distance(b);
+    const Clipped &a = corners[static_cast<size_t>(i)], &b = corners[static_cast<size_t>((i + 1) % count)];
+    const double da = distance(a.p), db = distance(b.p);
     if (da >= 0) kept[static_cast<size_t>(number++)] = a;
     if ((da >= 0) != (db >= 0) && number < 5)
-      kept[static_cast<size_t>(number++)] = da >= 0 ? a + (b - a) * (da / (da - db)) : b + (a - b) * (db / (db - da));
+      kept[static_cast<size_t>(number++)] = da >= 0 ? between(a, b, da / (da - db)) : between(b, a, db / (db - da));
   }
   corners = kept;
   return number;
@@ -72,14 +81,15 @@ template <class Distance> int clip(std::array<glm::dvec4, 5>& corners, int count
 Polygon place(const RayTriangles::Triangle& triangle, const Lattice& lattice) {
   Polygon polygon;
   if (!triangle.usable) return polygon;
-  std::array<glm::dvec4, 5> clipped{};
-  for (size_t i = 0; i < 3; ++i) clipped[i] = lattice.matrix * glm::dvec4(triangle.corners[i], 1);
+  std::array<Clipped, 5> clipped{};
+  for (size_t i = 0; i < 3; ++i)
+    clipped[i] = {lattice.matrix * glm::dvec4(triangle.corners[i], 1), triangle.coordinates[i]};
   int count = 3;
   count = clip(clipped, count, [](const glm::dvec4& p) { return p.z; });
   count = clip(clipped, count, [](const glm::dvec4& p) { return p.w - p.z; });
   double leastW = std::numeric_limits<double>::infinity();
   for (int i = 0; i < count; ++i) {
-    const glm::dvec4& p = clipped[static_cast<size_t>(i)];
+    const glm::dvec4& p = clipped[static_cast<size_t>(i)].p;
     if (!(p.w > 0)) return polygon; // z = w = 0: the eye itself
     leastW = std::min(leastW, p.w);
     const double depth = p.z / p.w;
@@ -87,7 +97,8 @@ Polygon place(const RayTriangles::Triangle& triangle, const Lattice& lattice) {
                                                 (p.y / p.w + 1) / 2 * lattice.height * lattice.samples - 0.5},
                                                lattice.perspective ? 1 / p.w
                                                : lattice.reversed  ? depth
-                                                                   : -depth};
+                                                                   : -depth,
+                                               glm::dvec3(clipped[static_cast<size_t>(i)].coordinates, 1) / p.w};
   }
   for (int i = 0; i < count; ++i)
     if (const Corner& c = polygon.corners[static_cast<size_t>(i)]; !std::isfinite(c.at.x + c.at.y + c.nearness))
@@ -112,10 +123,14 @@ struct Piece {
   double rim, nearest, farthest;
   glm::dvec2 slope; ///< of nearness
   glm::dvec2 low, high;
-  uint32_t number;
+  uint32_t number, flags;
+  glm::dvec3 texture, textureX, textureY; ///< at the first corner, and how it changes
+
+  bool isSeeThrough() const { return (flags & GPGP_DRAW_SEE_THROUGH) != 0; }
+  uint32_t test() const { return flags >> 8 & 31; } ///< 1 and the alpha test's index; 0: none
 };
 
-bool makePiece(const Polygon& polygon, int i, uint32_t number, Piece& piece) {
+bool makePiece(const Polygon& polygon, int i, uint32_t number, uint32_t flags, Piece& piece) {
   piece.corners = {polygon.corners[0], polygon.corners[static_cast<size_t>(i)],
                    polygon.corners[static_cast<size_t>(i) + 1]};
   const auto& c = piece.corners;
@@ -130,6 +145,11 @@ bool makePiece(const Polygon& polygon, int i, uint32_t number, Piece& piece) {
   piece.low = glm::min(c[0].at, glm::min(c[1].at, c[2].at)) - piece.rim;
   piece.high = glm::max(c[0].at, glm::max(c[1].at, c[2].at)) + piece.rim;
   piece.number = number;
+  piece.flags = flags;
+  piece.texture = c[0].texture;
+  const glm::dvec3 ta = c[1].texture - c[0].texture, tb = c[2].texture - c[0].texture;
+  piece.textureX = (ta * b.y - tb * a.y) / area;
+  piece.textureY = (tb * a.x - ta * b.x) / area;
   return std::isfinite(piece.slope.x + piece.slope.y);
 }
 
@@ -145,7 +165,7 @@ Range rangeOf(double low, double high, int begin, int end) {
 /// Points of the lattice from `left`, `top` on, and what the rays through them see.
 class Tile {
 public:
-  Tile() : nearness_(size_t{kTile} * kTile), number_(nearness_.size()) {}
+  explicit Tile(const RayScene& scene) : scene_(scene), nearness_(size_t{kTile} * kTile), number_(nearness_.size()) {}
 
   void begin(int left, int top, int width, int height) {
     left_ = left, top_ = top, width_ = width, height_ = height;
@@ -171,6 +191,24 @@ public:
           drawRow(piece, y, std::max(xs.begin, bx * kBlock), std::min(xs.end, (bx + 1) * kBlock),
                   blocks_[static_cast<size_t>(by * kTileBlocks + bx)]);
       }
+  }
+  /// Once all that hides is drawn: the points that see a triangle which hides nothing.
+  template <class Tell> void tellThrough(const Piece& piece, const Tell& told) const {
+    const Range xs = rangeOf(piece.low.x - left_, piece.high.x - left_, 0, width_);
+    const Range ys = rangeOf(piece.low.y - top_, piece.high.y - top_, 0, height_);
+    uint64_t rays = 0;
+    for (int y = ys.begin; y < ys.end; ++y)
+      for (int x = xs.begin; x < xs.end; ++x) {
+        const double px = left_ + x, py = top_ + y;
+        bool inside = true;
+        if (!reaches(piece, px, py, inside) || !inside || !isThere(piece, px, py)) continue;
+        const Corner& c = piece.corners[0];
+        const double nearness = std::clamp(c.nearness + piece.slope.x * (px - c.at.x) + piece.slope.y * (py - c.at.y),
+                                           piece.farthest, piece.nearest);
+        const double best = nearness_[static_cast<size_t>(y * kTile + x)];
+        rays += best == kNothing || nearness >= best - kTie * std::max(std::abs(best), std::abs(nearness));
+      }
+    if (rays) told(piece.number, rays);
   }
   /// Each run of points that see one triangle.
   template <class Tell> void tell(const Tell& told) const {
@@ -228,6 +266,7 @@ private:
     for (int x = range.begin; x < range.end; ++x) {
       bool inside = true;
       if ((x < sure.begin || x >= sure.end) && !reaches(piece, left_ + x, py, inside)) continue;
+      if (piece.test() && !isThere(piece, left_ + x, py)) continue;
       const double nearness = std::clamp(start + piece.slope.x * x, piece.farthest, piece.nearest);
       const auto at = static_cast<size_t>(y * kTile + x);
       double& best = nearness_[at];
@@ -246,6 +285,14 @@ private:
     }
   }
 
+  /// Whether its texture lets a piece be at a point.
+  bool isThere(const Piece& piece, double px, double py) const {
+    if (!piece.test() || !scene_.passesAlpha) return true;
+    const glm::dvec2 from = glm::dvec2(px, py) - piece.corners[0].at;
+    const glm::dvec3 at = piece.texture + piece.textureX * from.x + piece.textureY * from.y;
+    return scene_.passesAlpha(piece.test() - 1, glm::dvec2(at) / at.z);
+  }
+
   /// Whether a point lies in a piece or its rim, and whether in the piece itself.
   static bool reaches(const Piece& piece, double px, double py, bool& inside) {
     for (size_t i = 0; i < 3; ++i) {
@@ -259,6 +306,7 @@ private:
     return true;
   }
 
+  const RayScene& scene_;
   int left_ = 0, top_ = 0, width_ = 0, height_ = 0;
   std::vector<double> nearness_;
   std::vector<uint32_t> number_;
@@ -299,7 +347,7 @@ void castField(const RayTriangles& triangles, const Lattice& lattice, const std:
     const RayTriangles::Triangle triangle = triangles.at(at);
     const Polygon polygon = place(triangle, lattice);
     for (int i = 1; i + 1 < polygon.count; ++i)
-      if (Piece piece; makePiece(polygon, i, triangle.number, piece)) pieces.push_back(piece);
+      if (Piece piece; makePiece(polygon, i, triangle.number, triangle.flags, piece)) pieces.push_back(piece);
   }
   std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.nearest > b.nearest; });
   const int right = std::min(left + kField, static_cast<int>(lattice.width * lattice.samples));
@@ -313,7 +361,7 @@ void castField(const RayTriangles& triangles, const Lattice& lattice, const std:
       for (int x = xs.begin; x < xs.end; x += kTile - (x - left) % kTile)
         lists[static_cast<size_t>((y - top) / kTile * kTiles + (x - left) / kTile)].push_back(i);
   }
-  Tile tile;
+  Tile tile(triangles.scene());
   for (int y = top; y < bottom; y += kTile)
     for (int x = left; x < right; x += kTile) {
       const auto& list = lists[static_cast<size_t>((y - top) / kTile * kTiles + (x - left) / kTile)];
@@ -321,8 +369,10 @@ void castField(const RayTriangles& triangles, const Lattice& lattice, const std:
       tile.begin(x, y, std::min(kTile, right - x), std::min(kTile, bottom - y));
       for (size_t i = 0; i < list.size(); ++i) {
         if (i % 64 == 63 && tile.hides(pieces[list[i]].nearest)) break;
-        tile.draw(pieces[list[i]]);
+        if (!pieces[list[i]].isSeeThrough()) tile.draw(pieces[list[i]]);
       }
+      for (const uint32_t i : list)
+        if (pieces[i].isSeeThrough()) tile.tellThrough(pieces[i], told);
       tile.tell(told);
     }
 }

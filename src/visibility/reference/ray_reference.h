@@ -6,7 +6,8 @@
 // them, and the nearest triangle is what a ray sees; where two are equally near (to 2^-30 of their distance) the lower
 // number. Triangles that face away are not there. A rim as wide as the corners' rounding to float numbers, at most
 // 1/1024 pixel, hides what lies behind it but is not seen itself: nothing shows through the crack between an edge and a
-// corner that was meant to lie on it.
+// corner that was meant to lie on it. Alpha-tested triangles are there where their texture says so. A see-through one
+// hides nothing, and all rays see it that nothing stops before it.
 #pragma once
 #include "visibility/reference/ray_scene.h"
 

@@ -24,7 +24,7 @@ RayTriangles::Triangle RayTriangles::at(size_t place) const {
   triangle.flags = draw.flags;
   const auto row = [m](int i) { return glm::dvec3(m[i * 4], m[i * 4 + 1], m[i * 4 + 2]); };
   triangle.turned = glm::dot(row(0), glm::cross(row(1), row(2))) < 0;
-  triangle.usable = triangle.number < scene_.triangleCount;
+  triangle.usable = triangle.number < scene_.triangleCount && !(draw.flags & GPGP_DRAW_DISABLED);
   double largest = 0;
   for (size_t i = 0; i < 3; ++i) {
     const size_t index = mesh.firstIndex + local * 3 + i;
@@ -33,6 +33,8 @@ RayTriangles::Triangle RayTriangles::at(size_t place) const {
       triangle.usable = false;
       return triangle;
     }
+    if (vertex * 2 + 1 < scene_.coordinates.size())
+      triangle.coordinates[i] = {scene_.coordinates[vertex * 2], scene_.coordinates[vertex * 2 + 1]};
     const float* p = &scene_.positions[vertex * 3];
     for (int axis = 0; axis < 3; ++axis) {
       const glm::dvec3 r = row(axis);

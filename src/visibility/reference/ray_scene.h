@@ -1,10 +1,12 @@
 // Triangles as the reference sees them: of the engine's buffers, in the world, in double precision.
 #pragma once
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <gpgp/visibility.h>
 
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,7 +17,10 @@ struct RayScene {
   std::span<const uint32_t> indices;
   std::span<const GpgpMesh> meshes;
   std::span<const GpgpVisibilityDraw> draws;
-  uint32_t triangleCount = 0; ///< numbers are below
+  uint32_t triangleCount = 0;         ///< numbers are below
+  std::span<const float> coordinates; ///< texture coordinates by vertex; missing ones are 0
+  /// Whether an alpha test's texture lets a triangle be at a place; on any thread.
+  std::function<bool(uint32_t test, glm::dvec2 place)> passesAlpha;
 };
 
 /// All triangles of all draws, by their place among them.
@@ -26,6 +31,7 @@ public:
 
   struct Triangle {
     std::array<glm::dvec3, 3> corners;
+    std::array<glm::dvec2, 3> coordinates{};
     uint32_t number = 0;
     uint32_t flags = 0;  ///< GPGP_DRAW_...
     bool turned = false; ///< the transform mirrors
@@ -34,6 +40,7 @@ public:
   };
   size_t size() const { return first_.back(); }
   Triangle at(size_t place) const;
+  const RayScene& scene() const { return scene_; }
 
 private:
   const RayScene scene_;

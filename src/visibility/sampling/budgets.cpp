@@ -24,11 +24,13 @@ Budgets::Budgets(const GpgpVisibilityRecorderCreateInfo& info, const VkPhysicalD
                              : static_cast<uint32_t>(
                                    std::min<uint64_t>((uint64_t(maxWidth) * maxHeight * maxCameras + maxCandidates) * 4,
                                                       limits.maxStorageBufferRange / shader::kPairBytes))),
+      maxNonOpaque(std::min(info.maxNonOpaque, maxTriangles)),
       recordShares(std::max(
           std::min(maxCameras / 4, limits.maxStorageBufferRange / kRecordBytes / (kMediumRecords + kLargeRecords)),
           1u)) {}
 
 uint64_t Budgets::chunks() const { return uint64_t(maxTriangles) / shader::kChunk + maxDraws + 1; }
+uint64_t Budgets::nonOpaqueAt() const { return uint64_t(maxTriangles) * (methods & GPGP_SAMPLING_EXACT_BIT ? 2 : 1); }
 uint64_t Budgets::slots() const { return slotsOf(maxWidth, maxHeight) * maxCameras; }
 uint32_t Budgets::mediumRecords() const { return recordsOf(maxTriangles, kMediumRecords, recordShares); }
 uint32_t Budgets::largeRecords() const { return recordsOf(maxTriangles, kLargeRecords, recordShares); }

@@ -144,8 +144,50 @@ Result<void> checkInput(const GpgpVisibilityInfo& info) {
   return {};
 }
 
+/// Textures, and where triangles lie on them.
+Result<void> checkAlphaTests(const GpgpVisibilityInfo& info, const Budgets& budgets) {
+  if (!info.alphaTestCount) return {};
+  if (info.alphaTestCount > shader::kMaxAlphaTests)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "alphaTestCount is %u; at most %u", info.alphaTestCount,
+                     shader::kMaxAlphaTests);
+  if (!info.alphaTests)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "alphaTests is NULL, but alphaTestCount is %u", info.alphaTestCount);
+  if (!budgets.maxNonOpaque)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "alphaTestCount is %u, but the recorder was made with maxNonOpaque 0",
+                     info.alphaTestCount);
+  for (uint32_t i = 0; i < info.alphaTestCount; ++i) {
+    const GpgpAlphaTest& test = info.alphaTests[i];
+    if (!test.view) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "alphaTests[%u].view is NULL", i);
+    if (!test.sampler) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "alphaTests[%u].sampler is NULL", i);
+    if (test.layout == VK_IMAGE_LAYOUT_UNDEFINED)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "alphaTests[%u].layout is UNDEFINED: nothing could be found there",
+                       i);
+    if (!(test.cutoff > -1e30f && test.cutoff < 1e30f && test.level >= 0 && test.level <= 32))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                       "alphaTests[%u].cutoff, level are %g, %g; expected finite, and 0 to 32", i,
+                       static_cast<double>(test.cutoff), static_cast<double>(test.level));
+  }
+  const uint32_t number = textureFormatOf(info.textureCoordinateFormat).bytes;
+  if (!number)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                     "textureCoordinateFormat is %d; expected two floats, halves or unorm16",
+                     info.textureCoordinateFormat);
+  if (info.textureCoordinateStride % number ||
+      (info.textureCoordinateStride && info.textureCoordinateStride < number * 2))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "textureCoordinateStride is %u; expected a multiple of %u from %u on",
+                     info.textureCoordinateStride, number, number * 2);
+  if (info.textureCoordinateOffset % number)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "textureCoordinateOffset is %u; expected a multiple of %u",
+                     info.textureCoordinateOffset, number);
+  if (auto ok = checkSize("textureCoordinates", info.textureCoordinates, 4, "a vertex"); !ok) return ok;
+  if (info.textureCoordinates.size % 4)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "textureCoordinates.size is %llu; expected a multiple of 4",
+                     static_cast<unsigned long long>(info.textureCoordinates.size));
+  return {};
+}
+
 /// Bits, lists and commands.
-Result<void> checkOutput(const GpgpVisibilityInfo& info) {
+Result<void> checkOutput(const GpgpVisibilityInfo& info, const CameraHistory* history) {
   if (info.drawCommands.buffer) {
     const bool counted = info.commands.buffer || info.drawCountBuffer.buffer;
     const uint64_t needed = counted ? 1 : std::max(info.drawCount, 1u);
@@ -172,6 +214,10 @@ Result<void> checkOutput(const GpgpVisibilityInfo& info) {
       return ok;
   if (info.visibleList.buffer)
     if (auto ok = checkSize("visibleList", info.visibleList, 4, "one triangle"); !ok) return ok;
+  if (info.changedList.buffer && !history)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "changedList is given, but history is not");
+  if (info.changedList.buffer)
+    if (auto ok = checkSize("changedList", info.changedList, 16, "the counts"); !ok) return ok;
   if (info.visibleCount.buffer)
     if (auto ok = checkSize("visibleCount", info.visibleCount, info.drawCommands.buffer ? 20 : 16,
                             "the count and the arguments");
@@ -193,7 +239,8 @@ Result<void> checkSampleInfo(const GpgpVisibilityInfo& info, const Budgets& budg
   if (auto ok = checkSampling(info, budgets, history); !ok) return ok;
   if (auto ok = checkInput(info); !ok) return ok;
   if (auto ok = checkOrigins(info); !ok) return ok;
-  return checkOutput(info);
+  if (auto ok = checkAlphaTests(info, budgets); !ok) return ok;
+  return checkOutput(info, history);
 }
 
 } // namespace gpgp::visibility

@@ -6,9 +6,13 @@
 #include "shaders/visibility_bin_place.spv.h"
 #include "shaders/visibility_pixel_lists.spv.h"
 #include "shaders/visibility_resolve.spv.h"
+#include "shaders/visibility_resolve_alpha.spv.h"
 #include "shaders/visibility_resolve_long.spv.h"
+#include "shaders/visibility_resolve_long_alpha.spv.h"
 #include "shaders/visibility_resolve_long_subgroups.spv.h"
+#include "shaders/visibility_resolve_long_subgroups_alpha.spv.h"
 #include "shaders/visibility_resolve_subgroups.spv.h"
+#include "shaders/visibility_resolve_subgroups_alpha.spv.h"
 #include "shaders/visibility_select.spv.h"
 #include "shaders/visibility_select_large.spv.h"
 
@@ -16,12 +20,12 @@
 
 namespace gpgp::visibility {
 
-void addExact(core::PassList& list, const core::Device& device) {
+void addExact(core::PassList& list, const Budgets& budgets, const core::Device& device) {
   using namespace shader;
   using enum core::UseKind;
-  const uint32_t software = device.software ? 1 : 0;
+  const uint32_t software = device.software ? 1 : 0, nonOpaque = budgets.maxNonOpaque ? 1 : 0;
   const auto addResolve = [&](const char* name, const core::ShaderCode& spirv, size_t arguments) -> core::Pass& {
-    return list.dispatchIndirect(name, addShader(list, name, spirv, {software}),
+    return list.dispatchIndirect(name, addShader(list, name, spirv, {software, 1, 1, nonOpaque}),
                                  {{kBindParams, read},
                                   {kBindSlots, readWrite},
                                   {kBindCounters, readWrite},
@@ -34,19 +38,22 @@ void addExact(core::PassList& list, const core::Device& device) {
   };
   const size_t first = list.passes.size();
   // Those that are pieces or many pixels wide beside gather: whether they are seen is asked later.
-  fetchesTriangles(list.dispatchIndirect("select large", addShader(list, "select large", visibility_select_large),
+  fetchesTriangles(list.dispatchIndirect("select large",
+                                         addShader(list, "select large", visibility_select_large, {0, 1, 1, nonOpaque}),
                                          {{kBindQueue, read},
                                           {kBindCounters, readWrite},
+                                          {kBindTextureCoordinates, read},
                                           {kBindBits, readWrite},
                                           {kBindCandidates, write},
                                           {kBindSlots, readWrite}},
                                          kBindCounters, offsetof(Counters, bigUnfoldArgs)))
       .beside = true;
-  fetchesTriangles(list.dispatchIndirect("select", addShader(list, "select", visibility_select),
+  fetchesTriangles(list.dispatchIndirect("select", addShader(list, "select", visibility_select, {0, 1, 1, nonOpaque}),
                                          {{kBindQueue, read},
                                           {kBindSlots, readWrite},
                                           {kBindCounters, readWrite},
                                           {kBindBits, readWrite},
+                                          {kBindTextureCoordinates, read},
                                           {kBindCandidates, write},
                                           {kBindPairs, write}},
                                          kBindCounters, offsetof(Counters, onScreenArgs)));
@@ -79,10 +86,22 @@ void addExact(core::PassList& list, const core::Device& device) {
   };
   // Lists do not ask each other. The long ones first: what takes longest is not what is waited for at the end.
   addResolve("resolve long", choose(visibility_resolve_long_subgroups, visibility_resolve_long),
-             offsetof(Counters, longArgs));
-  addResolve("resolve", choose(visibility_resolve_subgroups, visibility_resolve), offsetof(Counters, openArgs)).beside =
-      true;
-  for (size_t i = first; i < list.passes.size(); ++i) list.passes[i].condition = kIfExact;
+             offsetof(Counters, longArgs))
+      .condition = kIfResolve;
+  core::Pass& shorter =
+      addResolve("resolve", choose(visibility_resolve_subgroups, visibility_resolve), offsetof(Counters, openArgs));
+  shorter.beside = true, shorter.condition = kIfResolve;
+  if (budgets.maxNonOpaque) {
+    core::Pass& longAlpha =
+        addResolve("resolve long", choose(visibility_resolve_long_subgroups_alpha, visibility_resolve_long_alpha),
+                   offsetof(Counters, longArgs));
+    longAlpha.beside = true, longAlpha.condition = kIfResolveAlpha;
+    core::Pass& alpha = addResolve("resolve", choose(visibility_resolve_subgroups_alpha, visibility_resolve_alpha),
+                                   offsetof(Counters, openArgs));
+    alpha.beside = true, alpha.condition = kIfResolveAlpha;
+  }
+  for (size_t i = first; i < list.passes.size(); ++i)
+    if (list.passes[i].condition == UINT32_MAX) list.passes[i].condition = kIfExact;
 }
 
 } // namespace gpgp::visibility

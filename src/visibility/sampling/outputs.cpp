@@ -7,6 +7,7 @@
 #include "shaders/visibility_extents.spv.h"
 #include "shaders/visibility_finish.spv.h"
 #include "shaders/visibility_list.spv.h"
+#include "shaders/visibility_list_count.spv.h"
 
 #include <cstddef>
 
@@ -37,12 +38,19 @@ void addOutputs(core::PassList& list) {
             {kBindDrawIndices, write},
             {kBindDrawTriangles, write}},
            kIfDraws);
-  list.dispatch(
-      "list", addShader(list, "list", visibility_list),
-      {{kBindParams, read}, {kBindCounters, readWrite}, {kBindBits, read}, {kBindList, write}, {kBindView, readWrite}},
-      kWordGroups);
+  list.dispatch("list count", addShader(list, "list count", visibility_list_count),
+                {{kBindParams, read}, {kBindCounters, readWrite}, {kBindBits, read}, {kBindView, read}}, kListGroups);
+  list.dispatch("list", addShader(list, "list", visibility_list),
+                {{kBindParams, read},
+                 {kBindCounters, read},
+                 {kBindBits, read},
+                 {kBindList, write},
+                 {kBindChanged, write},
+                 {kBindView, readWrite}},
+                kListGroups);
   list.dispatch("finish", addShader(list, "finish", visibility_finish),
-                {{kBindParams, read}, {kBindCounters, readWrite}, {kBindCount, write}}, kOneGroup);
+                {{kBindParams, read}, {kBindCounters, readWrite}, {kBindChanged, write}, {kBindCount, write}},
+                kOneGroup);
 }
 
 } // namespace gpgp::visibility

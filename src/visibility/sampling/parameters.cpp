@@ -14,7 +14,10 @@ using shader::Params;
 static_assert(sizeof(GpgpMesh) == sizeof(shader::Mesh) && sizeof(GpgpVisibilityDraw) == sizeof(shader::Draw));
 static_assert(offsetof(GpgpVisibilityDraw, flags) == offsetof(shader::Draw, flags) &&
               offsetof(GpgpVisibilityDraw, origin) == offsetof(shader::Draw, origin));
-static_assert(GPGP_DRAW_TWO_SIDED == shader::kTwoSided && GPGP_DRAW_CLOCKWISE == shader::kClockwise);
+static_assert(GPGP_DRAW_TWO_SIDED == shader::kTwoSided && GPGP_DRAW_CLOCKWISE == shader::kClockwise &&
+              GPGP_DRAW_SEE_THROUGH == shader::kSeeThrough && GPGP_DRAW_DISABLED == shader::kDisabled);
+static_assert(GPGP_DRAW_ALPHA_TEST(shader::kMaxAlphaTests - 1) == shader::kMaxAlphaTests << 8 &&
+              GPGP_DRAW_LAYERS(1) == 1u << 16);
 static_assert(GPGP_SAMPLING_EXACT == shader::kExact && GPGP_SAMPLING_CONSERVATIVE == shader::kConservative &&
               GPGP_SAMPLING_NEARBY == shader::kNearby);
 static_assert(GPGP_HEURISTIC_IN_CIRCLE == shader::kInCircle && GPGP_HEURISTIC_DEPTH == shader::kDepths &&
@@ -23,9 +26,9 @@ static_assert(GPGP_HEURISTIC_IN_CIRCLE == shader::kInCircle && GPGP_HEURISTIC_DE
 namespace {
 constexpr uint32_t kReferenceSamples = 64;
 
-/// Vertices that a range holds, the last one without its padding.
-uint32_t verticesIn(VkDeviceSize bytes, uint32_t offset, uint32_t position, uint32_t stride) {
-  const uint64_t first = uint64_t(offset) + position;
+/// Vertices that a range holds, the last one without its padding; size: of what is read of each.
+uint32_t verticesIn(VkDeviceSize bytes, uint32_t offset, uint32_t size, uint32_t stride) {
+  const uint64_t first = uint64_t(offset) + size;
   return bytes < first ? 0 : static_cast<uint32_t>(std::min<VkDeviceSize>((bytes - first) / stride + 1, UINT32_MAX));
 }
 
@@ -47,6 +50,26 @@ void setOrigins(const GpgpVisibilityInfo& info, Params& params) {
     if (origin[0] != 0 || origin[1] != 0 || origin[2] != 0) params.hasOrigins = 1;
     splitOrigin(origin, params.cameraOrigins + size_t(i) * 8);
   }
+}
+
+void setAlphaTests(const GpgpVisibilityInfo& info, Params& params) {
+  for (uint32_t i = 0; i <= info.moreCameraCount; ++i) {
+    const uint32_t layers = (i ? info.moreCameras[i - 1] : info.camera).layerMask & 0xffffu;
+    params.cameraLayers[i] = layers;
+    params.allLayers = i && (!layers || !params.allLayers) ? 0 : params.allLayers | layers;
+  }
+  params.alphaTestCount = info.alphaTestCount;
+  for (uint32_t i = 0; i < info.alphaTestCount; ++i) {
+    params.alphaTests[i * 2] = info.alphaTests[i].cutoff;
+    params.alphaTests[i * 2 + 1] = info.alphaTests[i].level;
+  }
+  if (!info.alphaTestCount) return;
+  const PositionFormat format = textureFormatOf(info.textureCoordinateFormat);
+  params.textureFormat = format.kind;
+  params.textureOffset = info.textureCoordinateOffset;
+  params.textureStride = info.textureCoordinateStride ? info.textureCoordinateStride : format.bytes * 2;
+  params.textureCount =
+      verticesIn(info.textureCoordinates.size, params.textureOffset, format.bytes * 2, params.textureStride);
 }
 
 /// Where the recording's samples lie in a pixel.
@@ -75,6 +98,16 @@ PositionFormat positionFormatOf(VkFormat format) {
   }
 }
 
+PositionFormat textureFormatOf(VkFormat format) {
+  switch (format) {
+  case VK_FORMAT_UNDEFINED:
+  case VK_FORMAT_R32G32_SFLOAT: return {shader::kFloats, 4};
+  case VK_FORMAT_R16G16_SFLOAT: return {shader::kHalves, 2};
+  case VK_FORMAT_R16G16_UNORM: return {shader::kUnorms, 2};
+  default: return {};
+  }
+}
+
 uint32_t samplesOf(const GpgpVisibilityInfo& info) {
   if (info.method != GPGP_SAMPLING_STANDARD && info.method != GPGP_SAMPLING_REFERENCE) return 1;
   return info.samples ? info.samples : info.method == GPGP_SAMPLING_REFERENCE ? kReferenceSamples : 1;
@@ -93,6 +126,9 @@ Params parametersOf(const GpgpVisibilityInfo& info, const Budgets& budgets, cons
     for (int k = 0; k < 4; ++k) params.depthScales[i * 4 + static_cast<uint32_t>(k)] = scale[k];
   }
   setOrigins(info, params);
+  setAlphaTests(info, params);
+  params.maxNonOpaque = budgets.maxNonOpaque;
+  params.nonOpaqueAt = static_cast<uint32_t>(budgets.nonOpaqueAt());
   params.cameraCount = cameras;
   params.width = info.width;
   params.height = info.height;
@@ -140,6 +176,11 @@ Params parametersOf(const GpgpVisibilityInfo& info, const Budgets& budgets, cons
   params.hasList = info.visibleList.buffer ? 1 : 0;
   params.listCapacity =
       params.hasList ? static_cast<uint32_t>(std::min<VkDeviceSize>(info.visibleList.size / 4, UINT32_MAX)) : 0;
+  if (info.changedList.buffer) {
+    params.hasList |= 2;
+    params.changedCapacity =
+        static_cast<uint32_t>(std::min<VkDeviceSize>(info.changedList.size / 4 - shader::kChangedHeader, UINT32_MAX));
+  }
   params.writeCount = !info.visibleCount.buffer ? 0 : info.drawCommands.buffer ? 2 : 1;
   const auto room = [](const GpgpBuffer& buffer, uint32_t bytes) {
     return buffer.buffer ? static_cast<uint32_t>(std::min<VkDeviceSize>(buffer.size / bytes, UINT32_MAX)) : UINT32_MAX;

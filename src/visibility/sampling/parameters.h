@@ -8,11 +8,13 @@ namespace gpgp::visibility {
 
 constexpr uint32_t kCommandBytes = sizeof(VkDrawIndexedIndirectCommand);
 
-/// What lies in a vertex: shader::kFloats and so on, and a number's bytes; 0 for formats that are not read.
+/// What positions or texture coordinates are: shader::kFloats and so on, and a number's bytes; 0 for formats that are
+/// not read.
 struct PositionFormat {
   uint32_t kind = shader::kFloats, bytes = 0;
 };
 PositionFormat positionFormatOf(VkFormat format);
+PositionFormat textureFormatOf(VkFormat format);
 
 /// A pixel's samples, per side.
 uint32_t samplesOf(const GpgpVisibilityInfo& info);

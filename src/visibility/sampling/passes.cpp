@@ -17,7 +17,7 @@ void addResources(core::PassList& list, const Budgets& budgets) {
   const bool exact = budgets.methods & GPGP_SAMPLING_EXACT_BIT;
   const bool conservative = budgets.methods & GPGP_SAMPLING_CONSERVATIVE_BIT;
   const VkDeviceSize pairBytes = VkDeviceSize(budgets.maxPairs) * shader::kPairBytes;
-  const VkDeviceSize queueBytes = VkDeviceSize(budgets.maxTriangles) * 4;
+  const VkDeviceSize queueBytes = (budgets.nonOpaqueAt() + budgets.maxNonOpaque) * 4;
   VkDeviceSize recordBytes = VkDeviceSize(budgets.mediumRecords() + budgets.largeRecords()) * kRecordBytes;
   if (exact) recordBytes = std::max(recordBytes, VkDeviceSize(budgets.maxCandidates) * sizeof(shader::Candidate));
   if (budgets.methods & GPGP_SAMPLING_NEARBY_BIT)
@@ -32,9 +32,9 @@ void addResources(core::PassList& list, const Budgets& budgets) {
   engine("draws");
   engine("geometrySet");
   own("draw table", VkDeviceSize(budgets.maxDraws) * shader::kTableWords * 4 + budgets.chunks() * 8);
-  own("queue", exact ? std::max(queueBytes * 2, VkDeviceSize(budgets.maxPairs) * 4) : queueBytes);
+  own("queue", exact ? std::max(queueBytes, VkDeviceSize(budgets.maxPairs) * 4) : queueBytes);
   own("samples", budgets.pixels() * budgets.maxSamples * budgets.maxSamples * shader::kSampleWords * 4);
-  own("counters", sizeof(shader::Counters));
+  own("counters", sizeof(shader::Counters) + VkDeviceSize(shader::kListBlocks) * 12);
   engine("visibleBits");
   engine("visibleList");
   engine("visibleCount");
@@ -50,7 +50,15 @@ void addResources(core::PassList& list, const Budgets& budgets) {
   engine("triangleSizes");
   own("pairs",
       std::max(exact ? pairBytes : 4, conservative ? budgets.pixels() * shader::kGapWords * 4 : VkDeviceSize(0)));
-  assert(list.resources.size() == shader::kBindPairs + 1);
+  engine("textureCoordinates");
+  engine("changedList");
+  assert(list.resources.size() == shader::kBindTextures);
+  static constexpr const char* kTextures[shader::kMaxAlphaTests] = {
+      "alphaTests[0]",  "alphaTests[1]",  "alphaTests[2]",  "alphaTests[3]", "alphaTests[4]",  "alphaTests[5]",
+      "alphaTests[6]",  "alphaTests[7]",  "alphaTests[8]",  "alphaTests[9]", "alphaTests[10]", "alphaTests[11]",
+      "alphaTests[12]", "alphaTests[13]", "alphaTests[14]", "alphaTests[15]"};
+  if (budgets.maxNonOpaque)
+    for (const char* name : kTextures) list.add({name, texture, 0, true});
 }
 } // namespace
 
@@ -79,7 +87,7 @@ core::PassList describePasses(const Budgets& budgets, const core::Device& device
   core::PassList list(memory);
   addResources(list, budgets);
   addStandard(list, budgets, device);
-  if (budgets.methods & GPGP_SAMPLING_EXACT_BIT) addExact(list, device);
+  if (budgets.methods & GPGP_SAMPLING_EXACT_BIT) addExact(list, budgets, device);
   if (conservative) addConservative(list, budgets);
   if (budgets.methods & GPGP_SAMPLING_NEARBY_BIT) addNearby(list);
   addOutputs(list);

@@ -15,10 +15,11 @@ namespace gpgp::visibility {
 // Workgroup counts of a recording.
 constexpr uint32_t kOneGroup = 0, kClearGroups = 1, kPixelGroups = 2, kWordGroups = 3, kTileGroups = 4,
                    kEntryGroups = 5, kEachPixelGroups = 6, kChunkGroups = 7, kScreenTileGroups = 8, kAllotGroups = 9,
-                   kClusterGroups = 10;
+                   kClusterGroups = 10, kListGroups = 11;
 // Conditions of a recording.
 constexpr uint32_t kIfExact = 0, kIfCommands = 1, kIfDraws = 2, kIfExtents = 3, kIfConservative = 4, kIfSampling = 5,
-                   kIfMeasuring = 6, kIfNearby = 7, kIfClusters = 8;
+                   kIfMeasuring = 6, kIfNearby = 7, kIfClusters = 8, kIfNonOpaque = 9, kIfAlphaTests = 10,
+                   kIfResolve = 11, kIfResolveAlpha = 12;
 
 constexpr uint32_t kMaxBig = 1 << 20; ///< entries for candidates of more than 8 x 8 pixels
 constexpr uint32_t kMaxRefinements = 4;
@@ -34,7 +35,7 @@ core::PassList describePasses(const Budgets& budgets, const core::Device& device
 // The parts of it.
 /// Bits of what is seen at the pixels' samples.
 void addStandard(core::PassList& list, const Budgets& budgets, const core::Device& device);
-void addExact(core::PassList& list, const core::Device& device);
+void addExact(core::PassList& list, const Budgets& budgets, const core::Device& device);
 void addConservative(core::PassList& list, const Budgets& budgets);
 void addNearby(core::PassList& list);
 void addOutputs(core::PassList& list); ///< what follows the bits: lists, commands, triangles' sizes

@@ -26,6 +26,12 @@ void setBindings(core::Record& record, const GpgpVisibilityInfo& info, const sha
     bind(shader::kBindIndices, info.indices);
     bind(shader::kBindDraws, info.draws);
   }
+  if (params.alphaTestCount) bind(shader::kBindTextureCoordinates, info.textureCoordinates);
+  // Shaders name all textures, so those that are not there are bound to the first one.
+  for (uint32_t i = 0; i < shader::kMaxAlphaTests && params.alphaTestCount; ++i) {
+    const GpgpAlphaTest& from = info.alphaTests[i < info.alphaTestCount ? i : 0];
+    record.bindings[shader::kBindTextures + i].texture = {from.sampler, from.view, from.layout};
+  }
   if (params.hasCommands) bind(shader::kBindCommands, info.commands);
   if (params.clusterCount) {
     bind(shader::kBindClusters, info.clusters);
@@ -42,7 +48,8 @@ void setBindings(core::Record& record, const GpgpVisibilityInfo& info, const sha
     bindOwn(shader::kBindMeshes, geometry);
   if (info.triangleCount) bind(shader::kBindBits, info.visibleBits);
   if (params.hasSizes) bind(shader::kBindSizes, info.pixelCounts);
-  if (params.hasList) bind(shader::kBindList, info.visibleList);
+  if (params.hasList & 1) bind(shader::kBindList, info.visibleList);
+  if (params.hasList & 2) bind(shader::kBindChanged, info.changedList);
   if (params.writeCount) bind(shader::kBindCount, info.visibleCount);
   if (history) bindOwn(shader::kBindView, *history);
 }
@@ -53,6 +60,7 @@ void setGroups(core::Record& record, const shader::Params& params, const Budgets
   const uint64_t words = (uint64_t(params.triangleCount) + 31) / 32;
   const uint64_t slots =
       params.method == shader::kExact ? slotsOf(params.width, params.height) * params.cameraCount : 0;
+  record.groups[kListGroups] = {shader::kListBlocks, 1, 1};
   record.groups[kOneGroup] = {1, 1, 1};
   record.groups[kClearGroups] = {
       groupsOf256(
@@ -102,6 +110,10 @@ Result<void> VisibilityRecorder::prepare(VkCommandBuffer commandBuffer, const Gp
   record.conditions[kIfConservative] = params.method == shader::kConservative;
   record.conditions[kIfNearby] = params.method == shader::kNearby;
   record.conditions[kIfExact] = params.method == shader::kExact;
+  record.conditions[kIfAlphaTests] = params.alphaTestCount != 0;
+  record.conditions[kIfNonOpaque] = params.alphaTestCount == 0;
+  record.conditions[kIfResolve] = params.method == shader::kExact && params.alphaTestCount == 0;
+  record.conditions[kIfResolveAlpha] = params.method == shader::kExact && params.alphaTestCount != 0;
   record.conditions[kIfCommands] = params.hasCommands != 0;
   record.conditions[kIfClusters] = params.clusterCount && !info.keepClusters;
   record.conditions[kIfDraws] = info.drawCommands.buffer || params.hasDrawIndices || params.hasDrawTriangles;

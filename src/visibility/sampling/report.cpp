@@ -21,6 +21,8 @@ bool VisibilityRecorder::takeSampleReport(GpgpVisibilityReport& report) {
   report.neededTriangles = counters.items;
   report.skippedTriangles = counters.skippedTriangles;
   report.skippedDraws = counters.skippedDraws;
+  report.neededNonOpaque = counters.nonOpaque;
+  report.changed = counters.changed;
   report.neededCandidates = counters.candidates;
   report.neededPairs = counters.pairs;
   report.maxTriangles = budgets_.maxTriangles;
@@ -40,8 +42,10 @@ bool VisibilityRecorder::takeSampleReport(GpgpVisibilityReport& report) {
   report.overestimation = share(counters.falsePositives, counters.reference);
   report.coverageArea = share(wide(counters.foundArea), wide(counters.referenceArea));
   report.overestimationArea = share(counters.falsePositives, wide(counters.referenceArea));
-  const bool tooMany = counters.items > budgets_.maxTriangles || counters.unresolved ||
-                       (counters.hasList && counters.listed < counters.visible) ||
+  const bool tooMany = counters.items > budgets_.maxTriangles || counters.nonOpaque > budgets_.maxNonOpaque ||
+                       counters.unresolved ||
+                       ((counters.hasList & 2) && counters.changed < counters.appeared + counters.disappeared) ||
+                       ((counters.hasList & 1) && counters.listed < counters.visible) ||
                        counters.drawsGiven < counters.draws || counters.drawListed < counters.drawTriangles;
   if (report.base.status == GPGP_SUCCESS && tooMany) report.base.status = GPGP_BUDGET_EXCEEDED;
   if (report.base.status != GPGP_NOT_EXECUTED && counters.ended) report.base.status = GPGP_ERROR_UNSUPPORTED;

@@ -13,6 +13,10 @@
 #include "shaders/visibility_large_int64.spv.h"
 #include "shaders/visibility_medium.spv.h"
 #include "shaders/visibility_medium_int64.spv.h"
+#include "shaders/visibility_non_opaque.spv.h"
+#include "shaders/visibility_non_opaque_alpha.spv.h"
+#include "shaders/visibility_non_opaque_int64.spv.h"
+#include "shaders/visibility_non_opaque_int64_alpha.spv.h"
 #include "shaders/visibility_overflow.spv.h"
 #include "shaders/visibility_overflow_int64.spv.h"
 #include "shaders/visibility_plan.spv.h"
@@ -69,18 +73,40 @@ void addStandard(core::PassList& list, const Budgets& budgets, const core::Devic
                  {kBindCounters, readWrite}},
                 kChunkGroups);
 
+  const uint32_t margins = budgets.methods & (GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_REFERENCE_BIT) ? 1 : 0;
+  // Triangles that are not opaque, in one of three phases; with textures or without.
+  const auto addNonOpaque = [&](const char* name, uint32_t phase, bool beside) {
+    if (!budgets.maxNonOpaque) return;
+    for (const bool alpha : {false, true}) {
+      const core::ShaderCode& spirv = alpha ? choose(visibility_non_opaque_int64_alpha, visibility_non_opaque_alpha)
+                                            : choose(visibility_non_opaque_int64, visibility_non_opaque);
+      core::Pass& pass =
+          fetchesTriangles(list.dispatchIndirect(name, addShader(list, "non opaque", spirv, {phase, 0, margins}),
+                                                 {{kBindQueue, read},
+                                                  {kBindSamples, phase == 2 ? read : readWrite},
+                                                  {kBindTextureCoordinates, read},
+                                                  {kBindCounters, read},
+                                                  {kBindBits, phase == 2 ? readWrite : read},
+                                                  {kBindSizes, phase == 2 ? readWrite : read}},
+                                                 kBindCounters, offsetof(Counters, nonOpaqueArgs)));
+      pass.condition = alpha ? kIfAlphaTests : kIfNonOpaque;
+      pass.beside = beside || alpha;
+    }
+  };
   const char* const names[2][4] = {{"depth small", "depth medium", "depth large", "depth left"},
                                    {"ids small", "ids medium", "ids large", "ids left"}};
   const uint32_t limits = budgets.methods & GPGP_SAMPLING_EXACT_BIT ? 1 : 0;
-  const uint32_t margins = budgets.methods & (GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_REFERENCE_BIT) ? 1 : 0;
   for (uint32_t phase = 0; phase < (single ? 1 : 2); ++phase) {
     // Draws triangles that it makes itself, or those that have a record.
     const auto addMaking = [&](const char* name, uint32_t shader, core::UseKind queue,
                                size_t arguments) -> core::Pass& {
-      return fetchesTriangles(list.dispatchIndirect(
-          name, shader,
-          {{kBindQueue, queue}, {kBindSamples, readWrite}, {kBindSlots, readWrite}, {kBindCounters, readWrite}},
-          kBindCounters, arguments));
+      return fetchesTriangles(list.dispatchIndirect(name, shader,
+                                                    {{kBindQueue, queue},
+                                                     {kBindSamples, readWrite},
+                                                     {kBindSlots, readWrite},
+                                                     {kBindBits, queue == write ? readWrite : read},
+                                                     {kBindCounters, readWrite}},
+                                                    kBindCounters, arguments));
     };
     const auto addRecorded = [&](const char* name, uint32_t shader, size_t arguments) -> core::Pass& {
       return list.dispatchIndirect(name, shader,
@@ -117,11 +143,13 @@ void addStandard(core::PassList& list, const Budgets& budgets, const core::Devic
         addShader(list, "overflow", choose(visibility_overflow_int64, visibility_overflow), {phase, limits, margins}),
         read, offsetof(Counters, leftArgs))
         .beside = true;
+    addNonOpaque(phase ? "ids non-opaque" : "depth non-opaque", phase, true);
   }
   if (budgets.methods & GPGP_SAMPLING_CONSERVATIVE_BIT)
     fetchesTriangles(list.dispatch("surfaces", addShader(list, "surfaces", visibility_surfaces),
                                    {{kBindSamples, readWrite}, {kBindRecords, write}}, kEachPixelGroups))
         .condition = kIfConservative;
+  addNonOpaque("see-through", 2, false);
   list.dispatch("gather", addShader(list, "gather", visibility_gather),
                 {{kBindParams, read},
                  {kBindSamples, read},
