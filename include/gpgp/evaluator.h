@@ -96,6 +96,7 @@ typedef struct GpgpEvaluationInfo {
   uint32_t rangeCount;
   GpgpIsCancelledFn isCancelled; /**< Optional. */
   void* cancelUserData;
+  const GpgpSpawnCamera* camera; /**< As GpgpSpawnInfo::camera. */
 } GpgpEvaluationInfo;
 #define GPGP_EVALUATION_INFO_INIT GPGP_INIT(GpgpEvaluationInfo, GPGP_STRUCTURE_EVALUATION_INFO)
 

@@ -341,6 +341,30 @@ typedef struct GpgpSpawnBounds {
   float min[3], max[3]; /**< In metres. An empty box has min +infinity and max -infinity. */
 } GpgpSpawnBounds;
 
+/** A camera, for grammars that derive less of what is far away or out of sight. Their values CameraDistance(),
+ *  ScreenSize() and OutOfView() ask it. It does not matter to other grammars. Without a camera everything counts as
+ * near and in sight, so that all is derived at the finest level.
+ *
+ *  A shape's sphere is centred on the shape. Its diameter is the diagonal of the shape's extents, times the largest
+ *  scale of its axiom's transform. The same camera gives the same terminals on every device and on the CPU. */
+typedef struct GpgpSpawnCamera {
+  /** World space to Vulkan's clip space, column-major; perspective or parallel. Its six planes are the frustum of
+   *  OutOfView(); a far plane at infinity is none. Reversed depth does not matter. */
+  float viewProjection[16];
+  float position[3]; /**< World space, metres. Distances are measured from here, also by parallel projections. */
+  uint32_t height;   /**< Of the picture in pixels, for ScreenSize(). Not 0. */
+} GpgpSpawnCamera;
+
+/** The range of an axiom in GpgpSpawnInfo::instances. 16 bytes (std430). */
+typedef struct GpgpAxiomRange {
+  uint32_t first;    /**< Instance, from the beginning of the buffer's range. */
+  uint32_t capacity; /**< Instances. 0: the axiom's terminals are only counted. */
+  /** 0 before the recording; afterwards the axiom's terminals, those that did not fit included. The first min(count,
+   *  capacity) places of the range are written, in no particular order. Others keep what they held. */
+  uint32_t count;
+  uint32_t reserved; /**< 0. */
+} GpgpAxiomRange;
+
 typedef uint64_t GpgpSpawnFlags;
 /** Every bucket has a region of the output. GpgpSpawnInfo::draws says where each region begins. A region ends where
  *  that of the next bucket begins, the last one at the end of the buffer. Regions lie in the order of the buckets. */
@@ -392,6 +416,12 @@ typedef struct GpgpSpawnInfo {
    *  BUDGET_EXCEEDED it may also contain terminals that were omitted. STORAGE usage. Not if the recording only
    *  counts. */
   GpgpBuffer bounds;
+  const GpgpSpawnCamera* camera; /**< Optional. What rules see of this recording's shapes. @lifetime call */
+  /** Input and output, optional. GpgpAxiomRange[axiomCount]: every axiom writes its own range of instances and nothing
+   *  else. To derive some axioms anew, record these alone, each with its range; all other instances stay as they are.
+   *  Ranges must not overlap. What ends behind the buffer does not fit. STORAGE usage. Without draws, bounds and
+   * regions, and not in spawners that are ordered, compact or for vertices. */
+  GpgpBuffer ranges;
 } GpgpSpawnInfo;
 #define GPGP_SPAWN_INFO_INIT GPGP_INIT(GpgpSpawnInfo, GPGP_STRUCTURE_SPAWN_INFO)
 

@@ -227,6 +227,9 @@ public:
   }
   Value shapeSeed() const noexcept { return own({GPGP_VALUE_SHAPE_SEED, 0}); }
   Value shapeCustomAttribute() const noexcept { return own({GPGP_VALUE_SHAPE_CUSTOM_ATTRIBUTE, 0}); }
+  Value cameraDistance() const noexcept { return own({GPGP_VALUE_CAMERA_DISTANCE, 0}); }
+  Value screenSize() const noexcept { return own({GPGP_VALUE_SCREEN_SIZE, 0}); }
+  Value outOfView() const noexcept { return own({GPGP_VALUE_OUT_OF_VIEW, 0}); }
 
   Operator translate(const Value& x, const Value& y, const Value& z, const Successor& to) noexcept {
     return add(GPGP_OPERATOR_TRANSLATE, {x.get(), y.get(), z.get()}, {to});

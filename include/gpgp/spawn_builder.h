@@ -53,7 +53,12 @@ enum {
   GPGP_VALUE_SHAPE_NORMAL_Y = 17,
   GPGP_VALUE_SHAPE_NORMAL_Z = 18,
   /** ShapeRotation(X, X): component X of the shape's X axis in object space. Others: + 3 * axis + component. */
-  GPGP_VALUE_SHAPE_ROTATION_XX = 19
+  GPGP_VALUE_SHAPE_ROTATION_XX = 19,
+  /** From the camera of the recording to the shape's centre, metres. 0 without a camera. No attribute, nor the next
+   *  two: see GpgpSpawnCamera. */
+  GPGP_VALUE_CAMERA_DISTANCE = 28,
+  GPGP_VALUE_SCREEN_SIZE = 29, /**< Pixels that the sphere around the shape is wide. 2^100 without a camera. */
+  GPGP_VALUE_OUT_OF_VIEW = 30  /**< Metres that the sphere lies outside of the frustum. 0 inside, and without one. */
 };
 
 /** A value that an operator takes: a number, or what its id stands for. */

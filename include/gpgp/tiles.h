@@ -76,6 +76,7 @@ typedef struct GpgpTileInfo {
    *  says BUDGET_EXCEEDED. At least 1. */
   uint32_t capacity;
   GpgpTileFlags flags;
+  const GpgpSpawnCamera* camera; /**< As GpgpSpawnInfo::camera. @lifetime call */
 } GpgpTileInfo;
 #define GPGP_TILE_INFO_INIT GPGP_INIT(GpgpTileInfo, GPGP_STRUCTURE_TILE_INFO)
 

@@ -142,6 +142,18 @@ Result<void> checkOutput(const spawn::Spawner& spawner, const GpgpSpawnInfo& inf
   if (regions && spawner.compact() && !spawner.ordered())
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "GPGP_SPAWN_REGIONS is set; a spawner for compact instances has "
                                                   "regions only with GPGP_SPAWNER_ORDERED");
+  if (info.ranges.buffer) {
+    if (spawner.vertices() || spawner.ordered() || spawner.compact())
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "ranges.buffer is set; spawners that are ordered, compact or for "
+                                                    "vertices have no ranges");
+    if (counts || regions || info.draws.buffer || info.bounds.buffer)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "ranges.buffer is set, and %s",
+                       counts ? "instances.buffer is NULL" : "so are draws.buffer, bounds.buffer or regions");
+    if (info.ranges.size / sizeof(GpgpAxiomRange) < info.axiomCount)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "ranges.size is %llu bytes, axiomCount %u needs %llu",
+                       static_cast<unsigned long long>(info.ranges.size), info.axiomCount,
+                       static_cast<unsigned long long>(info.axiomCount) * sizeof(GpgpAxiomRange));
+  }
   if (info.firstInstance && (regions || spawner.vertices()))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "firstInstance is %u; with %s it must be 0", info.firstInstance,
                      regions ? "GPGP_SPAWN_REGIONS" : "vertices");

@@ -478,6 +478,59 @@ TEST(CliSpawn, TheSampleStreet) {
   EXPECT_EQ(street["terminals"], 5 * 361 + 5 * 374 + 28 * 94); // trees have lost a whorl to their thin trunks
 }
 
+TEST(CliSpawn, LinesOfGeoJsonBecomeAxiomsAtIntervals) {
+  // Each terminal says by its attribute where its axiom is; along the second segment X runs to the north.
+  const TemporaryFile grammar("along.pga", "axiom Box One;\nterminal T (1, 0);\nOne = T;\n");
+  const TemporaryFile file("streets.geojson", R"({"type": "FeatureCollection", "features": [
+  {"type": "Feature", "properties": {"name": "a", "seed": 7},
+   "geometry": {"type": "LineString", "coordinates": [[0, 0], [10, 0], [10, 7, 2]]}},
+  {"type": "Feature", "properties": {"size": [1, 2, 3]}, "geometry": {"type": "Point", "coordinates": [-5, 20]}},
+  {"type": "Feature", "geometry": null}
+]})");
+  const json result =
+      gpgpJson({"spawn", grammar.path(), "--axiom-file", file.path(), "--interval", "4", "--schedule", "interpreter"});
+  EXPECT_EQ(result["axioms"], 5); // 17.28 m: four of 4.32 m, and the point
+  EXPECT_EQ(result["terminals"], 5);
+  const auto error = [&](const std::string& text) {
+    const TemporaryFile wrong("wrong.geojson", text);
+    const std::string all =
+        gpgpFailure({"spawn", grammar.path(), "--axiom-file", wrong.path(), "--schedule", "interpreter"});
+    const size_t name = all.find("wrong.geojson:");
+    return name == std::string::npos ? all : all.substr(name + 14);
+  };
+  EXPECT_EQ(error("{\"type\": \"Polygon\"}").substr(0, 40), "1:1: error: \"Polygon\" is no geometry of a");
+  EXPECT_EQ(error("{\"type\": \"LineString\", \"coordinates\": [[1, 2]]}"),
+            "1:1: error: a line needs at least two places");
+  EXPECT_EQ(error("{\"type\": \"LineString\", \"coordinates\": [[1, 2], [1, 2]]}"),
+            "1:1: error: this line has no length");
+  EXPECT_EQ(error("{\"type\": \"FeatureCollection\", \"features\": [\n {\"type\": \"Feature\", \"geometry\": null},\n"
+                  "  {\"type\": \"Feature\", \"properties\": {\"rule\": \"Two\"},\n"
+                  "   \"geometry\": {\"type\": \"Point\", \"coordinates\": [1, 2]}}]}"),
+            "3:3: error: the grammar has no rule \"Two\"");
+}
+
+TEST(CliSpawn, ACameraAndAChange) {
+  const std::string wood = GPGP_SAMPLE_GRAMMARS "/../world/wood.pga";
+  const std::vector<std::string> all{"spawn",  wood,        "--axioms", "64",         "--axiom-size",
+                                     "7,10,7", "--spacing", "9",        "--schedule", "interpreter"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), all.begin(), all.end());
+    return more;
+  };
+  const uint64_t finest = gpgpJson(with({}))["terminals"];
+  EXPECT_EQ(finest, 64u * 283);
+  const uint64_t near = gpgpJson(with({"--camera", "0,4,60,0,3,0"}))["terminals"];
+  const uint64_t far = gpgpJson(with({"--camera", "0,4,900,0,3,0"}))["terminals"];
+  EXPECT_LT(near, finest);
+  EXPECT_LT(far, near);
+  EXPECT_EQ(gpgpJson(with({"--camera", "0,4,60,0,3,0", "--set", "pixels=0"}))["terminals"].get<uint64_t>() % 283, 0u);
+  const json changed = gpgpJson(with({"--changed", "5"}))["changed"];
+  EXPECT_EQ(changed["instances"], 3 * 283);
+  EXPECT_EQ(changed["of"], finest);
+  EXPECT_NE(gpgpFailure(with({"--camera", "1,2,3,1,2,3"})).find("--camera"), std::string::npos);
+  EXPECT_NE(gpgpFailure(with({"--changed", "5", "--sorted"})).find("--changed"), std::string::npos);
+}
+
 TEST(CliSpawn, AxiomFilesSayWhatIsWrongAndWhere) {
   const TemporaryFile grammar("rules2.pga", "axiom Box One;\nterminal T (1, 0);\nOne = T;\n");
   const auto error = [&](const std::string& text) {
@@ -505,7 +558,7 @@ TEST(CliSpawn, AxiomFilesSayWhatIsWrongAndWhere) {
             "2:1: error: expected an object with position, rotation, size, seed, rule");
   EXPECT_EQ(error("[\n{]").substr(0, 11), "2:2: error:");
   EXPECT_NE(error("x,z\n").find("no axioms"), std::string::npos);
-  EXPECT_EQ(error("{\"position\": [1, 2, 3]}"), "1:1: error: expected an array of axioms, [{...}, {...}]");
+  EXPECT_EQ(error("{\"position\": [1, 2, 3]}"), "1:1: error: expected an array of axioms, [{...}, {...}], or GeoJSON");
   EXPECT_NE(error("[{\"position\": [1, 2, 1e999]}]").find(" error: "), std::string::npos);
   EXPECT_EQ(error("\xef\xbb\xbfx,z\n1,two\n"), "2:3: error: z takes a number; \"two\" is none");
   EXPECT_EQ(error("x,qx,z\n1,0,1\n"), "2:1: error: an axiom with some of qx to qw needs all 4");

@@ -245,8 +245,8 @@ TEST(LanguageSuggestions, NameWhatIsMeant) {
   };
   const std::string operators = "3:5: error: there is no operator ",
                     functions = " is no function; expected Exp, Min, Max, Floor, Noise, Rand, ShapePos, ShapeSize, "
-                                "ShapeRotation, ShapeNormal, ShapeSeed or "
-                                "ShapeCustomAttribute; did you mean ";
+                                "ShapeRotation, ShapeNormal, ShapeSeed, "
+                                "ShapeCustomAttribute, CameraDistance, ScreenSize or OutOfView; did you mean ";
   EXPECT_EQ(only("A = translate(1,0,0) T;"), operators + "'translate'; did you mean 'Translate'?");
   EXPECT_EQ(only("A = Tarnslate(1,0,0) T;"), operators + "'Tarnslate'; did you mean 'Translate'?");
   EXPECT_EQ(only("A = Subdivide(1,0,0) T;"), operators + "'Subdivide'; did you mean 'SubDiv'?");
@@ -340,7 +340,8 @@ INSTANTIATE_TEST_SUITE_P(
              "3:15: error: ShapeRotation takes an axis and a component, found 1 argument"},
         Case{"A = Translate(Sin(1),0,0) T;", "3:15: error: 'Sin' is no function; expected Exp, Min, Max, Floor, Noise, "
                                              "Rand, ShapePos, ShapeSize, ShapeRotation, ShapeNormal, "
-                                             "ShapeSeed or ShapeCustomAttribute; did you mean 'Min'?"},
+                                             "ShapeSeed, ShapeCustomAttribute, CameraDistance, ScreenSize or "
+                                             "OutOfView; did you mean 'Min'?"},
         Case{"A = Translate(1 +,0,0) T;", "3:18: error: expected a value, found ','"},
         Case{"A = Translate(1,0,0 T;", "3:21: error: expected ',' or ')' after an argument, found 'T'"},
         Case{"A = Collider() T;", "3:5: error: Collider takes 1 argument, found 0"},

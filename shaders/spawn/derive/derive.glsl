@@ -234,6 +234,17 @@ void push(bool own, uint place, uint count, Shape s) {
 #include "spawn/colliders/context.glsl"
 #endif
 
+/// What the recording's camera sees of the shape.
+Seen seenOf(Shape s) {
+#ifdef GPGP_COLLIDERS
+  const uint axiom = axiomNumber(s.axiom) * 6;
+#else
+  const uint axiom = s.axiom * 6;
+#endif
+  return seenBy(record.view, s, uintBitsToFloat(axioms[axiom]), uintBitsToFloat(axioms[axiom + 1]),
+                uintBitsToFloat(axioms[axiom + 2]));
+}
+
 // Families are in a generated kernel's table, everything else that multiplies in the graph's words.
 Fan fanFor(Shape s) {
 #ifdef GPGP_TABLE
@@ -302,6 +313,15 @@ void writeInstance(uint target, uvec4 words[kInstanceWords4]) {
 #endif
 }
 
+/// The next place of an axiom's range, or nowhere.
+uint rangePlace(uint axiom) {
+  const uint range = axiom * kRangeWords;
+  const uint first = axiomRanges[range + kRangeFirst];
+  const uint most = record.instanceCapacity - min(record.instanceCapacity, first);
+  const uint nth = atomicAdd(axiomRanges[range + kRangeCount], 1);
+  return nth < min(most, axiomRanges[range + kRangeCapacity]) ? first + nth : kNowhere;
+}
+
 /// Terminals to what the recording wants of them. place: among count of them. first: the room that was made for all, as
 /// the first invocation knows.
 void emit(bool own, uint place, uint count, uint first, Shape s) {
@@ -322,7 +342,10 @@ void emit(bool own, uint place, uint count, uint first, Shape s) {
     words[5] = packPlane(s.size, terminal[kNodeRule]);
   }
   uint target = fromFirst(first) + place;
-  if (record.regions != 0 && own) {
+  if (record.byAxiom != 0 && own) {
+    target = rangePlace(s.axiom);
+    if (target == kNowhere) atomicAdd(state.instancesWritten, 1);
+  } else if (record.regions != 0 && own) {
     const uint bucket = words[3].x;
     target = atomicAdd(bucketCounts[bucket], 1);
     target = target < regionCapacity(bucket, false) ? target + regionStart(bucket, false) : kNowhere;

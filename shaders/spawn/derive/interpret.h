@@ -11,8 +11,8 @@
 
 GPGP_SHADER_BEGIN
 
-GPGP_FN float parameter(GPGP_GRAPH Shape s, uint index) {
-  return evaluate(GPGP_G s, graphWords[s.node + kNodeParameters] + index * kParameterSize, index);
+GPGP_FN float parameter(GPGP_GRAPH Shape s, uint index GPGP_SEEN_PARAMETER) {
+  return evaluate(GPGP_G s, graphWords[s.node + kNodeParameters] + index * kParameterSize, index GPGP_SEEN_ARGUMENT);
 }
 
 GPGP_SHADER_END

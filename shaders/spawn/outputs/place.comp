@@ -40,7 +40,7 @@ void main() {
   const bool sorted = !quads && keyed;
   const uint kept = sorted ? min(state.terminals, record.maxTerminals) : state.terminals;
   const bool lost = quads && !counted; // some may be, whose quads nobody made room for
-  const uint fitting = min(kept, record.instanceCapacity);
+  const uint fitting = record.byAxiom != 0 ? kept - state.instancesWritten : min(kept, record.instanceCapacity);
   const uint buckets = graphWords[kHeaderBuckets];
   if (lane == 0) allWritten = 0;
   uint needed = 0;

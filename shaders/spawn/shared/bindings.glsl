@@ -27,6 +27,7 @@ layout(set = 0, binding = kBindOrder, std430) buffer Order { uint order[]; }; //
 layout(set = 0, binding = kBindAxiomCounter, std430) readonly buffer AxiomCounter { uint axiomCounter; };
 // where the host reads it
 layout(set = 0, binding = kBindReport, std430) writeonly buffer Report { SpawnState report; };
+layout(set = 0, binding = kBindRanges, std430) buffer Ranges { uint axiomRanges[]; }; // kRangeWords each
 /// Where in order[] the record is that comes at a place.
 uint orderedAt(uint place) { return 3 * record.maxTerminals + place; }
 /// Where in order[] it says how many quads come before a place, up to that behind the last record.

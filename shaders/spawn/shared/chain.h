@@ -21,20 +21,20 @@
 GPGP_SHADER_BEGIN
 
 /// The edge that a conditional or random operator takes.
-GPGP_FN uint chooseEdge(GPGP_GRAPH Shape s, uint op) {
-  const float first = parameter(GPGP_G s, 0u);
+GPGP_FN uint chooseEdge(GPGP_GRAPH Shape s, uint op GPGP_SEEN_PARAMETER) {
+  const float first = parameter(GPGP_G s, 0u GPGP_SEEN_ARGUMENT);
   if (op == kOpIf) return first != 0.0f ? 0u : 1u;
   if (op == kOpIfSizeLess) return component(s.size, graphWords[s.node + kNodeArgument]) < first ? 0u : 1u;
   const uint count = graphWords[s.node + kNodeEdgeCount];
   float total = 0.0f;
   for (uint i = 0u; i < count; ++i) {
-    total = add(total, max(0.0f, parameter(GPGP_G s, i + 1u)));
+    total = add(total, max(0.0f, parameter(GPGP_G s, i + 1u GPGP_SEEN_ARGUMENT)));
   }
   const float x = multiply(subtract(first, floor(first)), total);
   float sum = 0.0f;
   uint chosen = 0u;
   for (uint i = 0u; i < count; ++i) {
-    const float p = max(0.0f, parameter(GPGP_G s, i + 1u));
+    const float p = max(0.0f, parameter(GPGP_G s, i + 1u GPGP_SEEN_ARGUMENT));
     if (p > 0.0f && (sum <= x)) chosen = i;
     sum = add(sum, p);
   }

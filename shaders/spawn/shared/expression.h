@@ -2,7 +2,18 @@
 // All values are settled floats; conditions are 1 and 0. Equality tolerates rounding, as the language asks for normals.
 #ifndef GPGP_SHADERS_SPAWN_EXPRESSION_H
 #define GPGP_SHADERS_SPAWN_EXPRESSION_H
-#include "spawn/shared/shape.h"
+#include "spawn/shared/view.h"
+
+// What the camera sees of the shape: in GLSL of the recording's, in C++ whoever calls says it where a parameter wants
+// it.
+#ifdef __cplusplus
+#define GPGP_SEEN_PARAMETER , Seen seen = seenFromNowhere()
+#define GPGP_SEEN_ARGUMENT , seen
+#else
+#define GPGP_SEEN_PARAMETER
+#define GPGP_SEEN_ARGUMENT
+Seen seenOf(Shape s); // derive/derive.glsl
+#endif
 
 GPGP_SHADER_BEGIN
 
@@ -48,11 +59,17 @@ GPGP_FN float combine(uint code, float a, float b, float drawn) {
 }
 
 /// A parameter's value for a shape; at is its word offset, index its place among the operator's parameters.
-GPGP_FN float evaluate(GPGP_GRAPH Shape s, uint at, uint index) {
+GPGP_FN float evaluate(GPGP_GRAPH Shape s, uint at, uint index GPGP_SEEN_PARAMETER) {
   const uint kind = graphWords[at];
   const uint value = graphWords[at + 1u];
   if (kind == kParameterConstant) return uintBitsToFloat(value);
   if (kind == kParameterAttribute) return attributeOf(s, value);
+#ifndef __cplusplus
+  Seen seen = seenFromNowhere();
+  for (uint i = kParameterProgram; i < kind; ++i) { // a loop: software devices skip nothing else
+    seen = seenOf(s);
+  }
+#endif
   float stack[kMaxStack];
   uint depth = 0u;
   uint draws = index << kDrawsOfParameter;
@@ -64,7 +81,7 @@ GPGP_FN float evaluate(GPGP_GRAPH Shape s, uint at, uint index) {
       next += 1u;
       depth += 1u;
     } else if (code >= kCodeAttributes) {
-      stack[depth] = attributeOf(s, code);
+      stack[depth] = code >= kCodeView ? seenValue(seen, code) : attributeOf(s, code);
       depth += 1u;
     } else {
       depth -= 1u;

@@ -87,7 +87,11 @@ GPGP_CONST uint kMultiplicityAny = 3u;      // any number
 GPGP_CONST uint kParameterConstant = 0u;  // value: float bits
 GPGP_CONST uint kParameterAttribute = 1u; // value: an attribute's code
 GPGP_CONST uint kParameterProgram = 2u;   // value: offset of its first code word
+GPGP_CONST uint kParameterView = 3u;      // the same, of a program that has codes from kCodeView on
 GPGP_CONST uint kParameterSize = 2u;
+GPGP_FN bool hasProgram(uint parameterKind) {
+  return parameterKind == kParameterProgram || parameterKind == kParameterView;
+}
 
 // division: what a SubDiv with constant parts makes of them. Fixed length, parts with a fixed length and parts with a
 // weight as bit sets (without those that are discarded), where its cuts begin, seen from its own start, or 0; then for
@@ -147,8 +151,12 @@ GPGP_BINARY_TABLE(GPGP_BINARY, GPGP_BINARY)
 #define GPGP_ATTRIBUTE(name, number, spelling, axes, value, member) GPGP_CONST uint kCode##name = number;
 GPGP_ATTRIBUTE_TABLE(GPGP_ATTRIBUTE)
 #undef GPGP_ATTRIBUTE
+#define GPGP_SEEN(name, number, spelling, value, member) GPGP_CONST uint kCode##name = number;
+GPGP_VIEW_TABLE(GPGP_SEEN)
+#undef GPGP_SEEN
 GPGP_CONST uint kCodeAttributes = 32u; // the first attribute
-GPGP_CONST uint kCodeCount = 52u;
+GPGP_CONST uint kCodeView = 52u;       // the first one of what the camera sees
+GPGP_CONST uint kCodeCount = 55u;
 
 /// GPGP_AXIOM_DEFAULT_START. Other starts are counted: first the rules, then the axioms.
 GPGP_CONST uint kDefaultRule = 0xffffffffu;

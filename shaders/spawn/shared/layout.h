@@ -27,12 +27,13 @@ GPGP_CONST int kBindAxiomCounter = 17;
 GPGP_CONST int kBindBounds = 18;
 GPGP_CONST int kBindBoundKeys = 19;
 GPGP_CONST int kBindReport = 20;
+GPGP_CONST int kBindRanges = 21;
 
 /// Counters of one recording, cleared at its start, and its report.
 struct SpawnState {
-  uint terminals; // derived, those that did not fit included
-  uint instancesWritten;
-  uint peakShapes; // that waited for a round, those that did not fit included
+  uint terminals;        // derived, those that did not fit included
+  uint instancesWritten; // while deriving by axiom: those that their range had no room for
+  uint peakShapes;       // that waited for a round, those that did not fit included
   uint droppedShapes;
   uint unfinishedShapes;
   uint rounds;
@@ -70,6 +71,14 @@ struct SpawnRound {
   uint finished;                  // workgroups
   uint linked;                    // the first round of a phase: colliders that its queries can find
   uint given; // shapes that its workgroups were willing to leave to idle ones; by batches: axioms that all rounds took
+};
+
+/// A recording's camera. Planes are seen from its position: a point p is inside where dot(plane.xyz, p) + plane.w >= 0.
+struct View {
+  // Position in the world; pixels that a metre covers at a distance of one metre. 0: there is no camera. Negative:
+  // pixels that a metre covers anywhere, of a parallel projection
+  vec4 camera;
+  vec4 left, right, bottom, top, front, back; // normals of unit length, or 0 and a w that nothing is outside of
 };
 
 /// What the CPU says with each recording.
@@ -110,6 +119,8 @@ struct SpawnConstants {
   uint recordsAtOnce;  // that a workgroup makes vertices of, at most kSpawnGroupSize
   uint one;            // 1, which no compiler knows
   uint firstInstance;  // added to what draws begin with
+  uint byAxiom;        // 1: every axiom has a range of the instances
+  View view;           // of the camera
 };
 
 // What becomes of terminals.
@@ -141,6 +152,12 @@ GPGP_CONST uint kOrderParts = 256u;
 GPGP_CONST uint kOrderWords = 4u;     // for each record, and kOrderParts
 GPGP_CONST uint kInstanceWords4 = 6u; // GpgpInstance as uvec4
 GPGP_CONST uint kDrawWords = 5u;      // VkDrawIndexedIndirectCommand
+
+// GpgpAxiomRange
+GPGP_CONST uint kRangeFirst = 0u;
+GPGP_CONST uint kRangeCapacity = 1u;
+GPGP_CONST uint kRangeCount = 2u;
+GPGP_CONST uint kRangeWords = 4u;
 
 GPGP_SHADER_END
 #endif

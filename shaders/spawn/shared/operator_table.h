@@ -90,4 +90,15 @@
   ROW(Seed, 50u, "ShapeSeed", 0, GPGP_VALUE_SHAPE_SEED, seed)                                                          \
   ROW(Custom, 51u, "ShapeCustomAttribute", 0, GPGP_VALUE_SHAPE_CUSTOM_ATTRIBUTE, custom)
 
+// Codes that leave what the recording's camera sees of the shape. ROW(name, number, spelling, value, member)
+//
+//   number        kCode + name, behind the attributes
+//   spelling      the name of a function of nothing
+//   value         GpgpGrammarValueId
+//   member        of Seen (view.h)
+#define GPGP_VIEW_TABLE(ROW)                                                                                           \
+  ROW(CameraDistance, 52u, "CameraDistance", GPGP_VALUE_CAMERA_DISTANCE, distance)                                     \
+  ROW(ScreenSize, 53u, "ScreenSize", GPGP_VALUE_SCREEN_SIZE, size)                                                     \
+  ROW(OutOfView, 54u, "OutOfView", GPGP_VALUE_OUT_OF_VIEW, outside)
+
 #endif

@@ -41,6 +41,24 @@ glm::mat4 viewAll(const Bounds& bounds, float yaw, float pitch, uint32_t width, 
   return projection * view;
 }
 
+glm::mat4 viewFrom(const glm::vec3& eye, const glm::vec3& target, float fov, uint32_t width, uint32_t height) {
+  const glm::vec3 back = glm::normalize(eye - target);
+  const glm::vec3 above = std::abs(back.y) > 0.9999f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+  const glm::vec3 right = glm::normalize(glm::cross(above, back)), up = glm::cross(back, right);
+  const float scale = 1.0f / std::tan(glm::radians(fov) * 0.5f);
+  const float near = std::min(glm::length(eye - target) * 1e-3f, 0.1f), far = near * 1e5f;
+  const glm::mat4 view(glm::vec4(right.x, up.x, back.x, 0), glm::vec4(right.y, up.y, back.y, 0),
+                       glm::vec4(right.z, up.z, back.z, 0),
+                       glm::vec4(-glm::dot(right, eye), -glm::dot(up, eye), -glm::dot(back, eye), 1));
+  glm::mat4 projection(0.0f);
+  projection[0][0] = scale * static_cast<float>(height) / static_cast<float>(width);
+  projection[1][1] = -scale;
+  projection[2][2] = far / (near - far);
+  projection[2][3] = -1.0f;
+  projection[3][2] = near * (far / (near - far));
+  return projection * view;
+}
+
 Painter::Painter(uint32_t width, uint32_t height, bool reversed, Style style)
     : reversed_(reversed), style_(style), width_(width * (style == Style::smooth ? 2 : 3)),
       height_(height * (style == Style::smooth ? 2 : 3)), depth_(size_t{width_} * height_, reversed ? 0.0f : 1.0f),

@@ -29,6 +29,11 @@ struct Bounds {
 /// it is seen. yaw and pitch in degrees: 0, 0 looks along -Z.
 glm::mat4 viewAll(const Bounds& bounds, float yaw, float pitch, uint32_t width, uint32_t height);
 
+/// The same from a place at another, with the field of view from top to bottom in degrees. The near plane is a
+/// thousandth of the distance between them away, at most 10 cm, the far plane 100 000 times as far. The places must
+/// differ.
+glm::mat4 viewFrom(const glm::vec3& eye, const glm::vec3& target, float fov, uint32_t width, uint32_t height);
+
 class Painter {
 public:
   /// smooth: a pixel is the mean of its four quarters. magnified: it becomes 3 x 3 of the picture's, and the middle one

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <sstream>
 
@@ -179,21 +180,18 @@ Row rowOf(const Json& object, spawn::Place place, spawn::Diagnostics& errors) {
   return row;
 }
 
-std::vector<Row> readJson(const std::string& text, spawn::Diagnostics& errors) {
-  Json all;
+Json parseJson(const std::string& text, spawn::Diagnostics& errors) {
   try {
-    all = Json::parse(text);
+    return Json::parse(text);
   } catch (const Json::parse_error& error) {
     errors.error(placeOf(text, error.byte ? error.byte - 1 : 0), error.what());
-    return {};
   } catch (const Json::exception& error) { // a number beyond all numbers, without its place
     errors.error({}, error.what());
-    return {};
   }
-  if (!all.is_array()) {
-    errors.error(placeOf(text, text.find('{')), "expected an array of axioms, [{...}, {...}]");
-    return {};
-  }
+  return {};
+}
+
+std::vector<Row> rowsOfArray(const std::string& text, const Json& all, spawn::Diagnostics& errors) {
   const std::vector<spawn::Place> places = placesOfValues(text);
   std::vector<Row> rows;
   for (size_t i = 0; i < all.size(); ++i) {
@@ -204,6 +202,132 @@ std::vector<Row> readJson(const std::string& text, spawn::Diagnostics& errors) {
   }
   return rows;
 }
+
+// ---------------------------------------------------------------- GeoJSON
+
+/// Points, and lines with a row at intervals, become rows; properties that rows have as well are theirs.
+class GeoJsonRows {
+public:
+  GeoJsonRows(const std::string& text, float interval, spawn::Diagnostics& errors)
+      : text_(text), interval_(interval), errors_(errors) {}
+
+  std::vector<Row> read(const Json& all) {
+    const std::string type = typeOf(all);
+    const auto features = all.find("features");
+    if (type != "FeatureCollection") {
+      place_ = placeOf(text_, text_.find('{'));
+      type == "Feature" ? feature(all) : geometry(all, Json::object());
+      return std::move(rows_);
+    }
+    if (features == all.end() || !features->is_array()) {
+      errors_.error(placeOf(text_, text_.find('{')), "a FeatureCollection needs an array of features");
+      return {};
+    }
+    const size_t key = text_.find("\"features\""), begin = text_.find('[', key);
+    std::vector<spawn::Place> places = placesOfValues(text_.substr(begin));
+    const spawn::Place start = placeOf(text_, begin);
+    for (size_t i = 0; i < features->size(); ++i) {
+      place_ = start;
+      if (i < places.size())
+        place_ = {start.line + places[i].line - 1, places[i].column + (places[i].line == 1 ? start.column - 1 : 0)};
+      feature((*features)[i]);
+    }
+    return std::move(rows_);
+  }
+
+private:
+  static std::string typeOf(const Json& object) {
+    const auto type = object.is_object() ? object.find("type") : object.end();
+    return type != object.end() && type->is_string() ? type->get<std::string>() : std::string();
+  }
+  void feature(const Json& feature) {
+    const auto properties = feature.find("properties"), shape = feature.find("geometry");
+    if (typeOf(feature) != "Feature") return errors_.error(place_, "expected an object of type \"Feature\"");
+    if (shape == feature.end() || shape->is_null()) return; // allowed, and without a place
+    Json known = Json::object();
+    if (properties != feature.end() && properties->is_object())
+      for (const char* name : {"size", "seed", "rule", "shape", "attribute"})
+        if (const auto found = properties->find(name); found != properties->end()) known[name] = *found;
+    geometry(*shape, known);
+  }
+  void geometry(const Json& geometry, const Json& properties) {
+    const std::string type = typeOf(geometry);
+    const auto list = geometry.is_object() ? geometry.find("coordinates") : geometry.end();
+    if (type.empty()) return errors_.error(place_, "expected GeoJSON: an object with a type, such as LineString");
+    if (type == "GeometryCollection" && geometry.contains("geometries") && geometry["geometries"].is_array()) {
+      for (const Json& one : geometry["geometries"]) this->geometry(one, properties);
+      return;
+    }
+    const bool isPoint = type == "Point", many = type == "MultiPoint" || type == "MultiLineString";
+    if (!isPoint && !many && type != "LineString")
+      return errors_.error(place_, quoted(type) + " is no geometry of axioms; those are points and lines (polygons: of "
+                                                  ".cga files)");
+    if (list == geometry.end() || !list->is_array()) return errors_.error(place_, "a " + type + " needs coordinates");
+    if (type == "MultiLineString")
+      for (const Json& one : *list) line(one, properties);
+    else if (type == "MultiPoint")
+      for (const Json& one : *list) point(one, properties);
+    else
+      isPoint ? point(*list, properties) : line(*list, properties);
+  }
+
+  /// x east, y up, z south.
+  std::optional<std::array<double, 3>> vertex(const Json& place) {
+    const auto isNumber = [&](size_t i) { return i < place.size() && place[i].is_number(); };
+    if (!place.is_array() || !isNumber(0) || !isNumber(1)) {
+      errors_.error(place_, "a place is an array of two or three numbers");
+      return std::nullopt;
+    }
+    return std::array{place[0].get<double>(), isNumber(2) ? place[2].get<double>() : 0.0, -place[1].get<double>()};
+  }
+  void point(const Json& place, const Json& properties) {
+    if (const auto p = vertex(place)) row(*p, 0, properties);
+  }
+  /// As many axioms as intervals fit, at least one, each in the middle of its part; X along the line.
+  void line(const Json& places, const Json& properties) {
+    std::vector<std::array<double, 3>> points;
+    if (places.is_array())
+      for (const Json& place : places) {
+        const auto p = vertex(place);
+        if (!p) return;
+        points.push_back(*p);
+      }
+    if (points.size() < 2) return errors_.error(place_, "a line needs at least two places");
+    std::vector<double> ends{0}; // of its segments
+    for (size_t i = 1; i < points.size(); ++i)
+      ends.push_back(ends.back() + std::hypot(points[i][0] - points[i - 1][0], points[i][1] - points[i - 1][1],
+                                              points[i][2] - points[i - 1][2]));
+    const double length = ends.back(), fitting = std::floor(length / interval_ + 1e-6);
+    if (!(length > 0)) return errors_.error(place_, "this line has no length");
+    if (!(fitting <= kMostOfALine))
+      return errors_.error(place_, "this line would have more than 10 million axioms; raise --interval");
+    const auto count = static_cast<size_t>(std::max(fitting, 1.0));
+    size_t segment = 1;
+    for (size_t i = 0; i < count; ++i) {
+      const double at = (static_cast<double>(i) + 0.5) * length / static_cast<double>(count);
+      while (segment + 1 < points.size() && ends[segment] < at) ++segment;
+      const auto &a = points[segment - 1], &b = points[segment];
+      const double t = (at - ends[segment - 1]) / (ends[segment] - ends[segment - 1]);
+      row({a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])},
+          std::atan2(a[2] - b[2], b[0] - a[0]) * 57.29577951308232, properties);
+    }
+  }
+  void row(const std::array<double, 3>& place, double rotation, const Json& properties) {
+    Json object = properties;
+    object["position"] = {place[0], place[1], place[2]};
+    object["rotation"] = rotation;
+    rows_.push_back(rowOf(object, place_, errors_));
+  }
+
+  static constexpr double kMostOfALine = 1e7;
+  const std::string& text_;
+  const double interval_;
+  spawn::Diagnostics& errors_;
+  spawn::Place place_; // of the feature
+  std::vector<Row> rows_;
+};
+
+// ---------------------------------------------------------------- axioms
 
 /// An axiom of a row; what is wrong is said, and then the axiom is of no use.
 class RowReader {
@@ -370,7 +494,18 @@ std::vector<GpgpAxiom> readAxioms(const std::filesystem::path& file, const std::
   const bool json = begin != std::string::npos && (text[begin] == '[' || text[begin] == '{');
   spawn::Diagnostics errors;
   std::vector<GpgpAxiom> axioms;
-  for (const Row& row : json ? readJson(text, errors) : readCsv(text, errors))
+  std::vector<Row> rows;
+  if (json) {
+    const Json all = parseJson(text, errors);
+    if (all.is_array()) rows = rowsOfArray(text, all, errors);
+    if (all.is_object() && all.contains("type"))
+      rows = GeoJsonRows(text, defaults.interval > 0 ? defaults.interval : defaults.size[0], errors).read(all);
+    else if (all.is_object())
+      errors.error(placeOf(text, text.find('{')), "expected an array of axioms, [{...}, {...}], or GeoJSON");
+  } else {
+    rows = readCsv(text, errors);
+  }
+  for (const Row& row : rows)
     axioms.push_back(RowReader(row, starts, defaults, static_cast<uint32_t>(axioms.size()), errors).axiom());
   report(errors, file.string());
   if (axioms.empty()) throw Failure(file.string() + ": there are no axioms in it");

@@ -29,8 +29,9 @@ uint64_t hashOf(std::span<const GpgpInstance> instances) {
 } // namespace
 
 spawn::Derivation checkThatItEnds(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms, uint32_t maxDepth,
-                                  const std::string& grammar) {
+                                  const std::string& grammar, const shader::View* view) {
   spawn::DeriveOptions options;
+  options.view = view;
   if (maxDepth) options.maxDepth = maxDepth;
   options.keepInstances = false;
   spawn::Derivation all = spawn::derive(words, axioms, options);
@@ -45,8 +46,10 @@ spawn::Derivation checkThatItEnds(std::span<const uint32_t> words, std::span<con
                 ": it is too large, or the derivation never ends; --max-depth bounds how deep rules nest");
 }
 
-std::optional<uint32_t> depthOf(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms) {
+std::optional<uint32_t> depthOf(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms,
+                                const shader::View* view) {
   spawn::DeriveOptions options;
+  options.view = view;
   options.maxDepth = 1u << 16; // each level is a place on the evaluator's stack
   options.keepInstances = false;
   const spawn::Derivation all = spawn::derive(words, axioms, options);
@@ -54,12 +57,13 @@ std::optional<uint32_t> depthOf(std::span<const uint32_t> words, std::span<const
 }
 
 Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>& axioms, uint32_t maxDepth,
-                   const spawn::VertexLayout* layout, const std::string& grammar) {
-  spawn::Derivation memory = checkThatItEnds(words, axioms, maxDepth, grammar);
+                   const spawn::VertexLayout* layout, const std::string& grammar, const shader::View* view) {
+  spawn::Derivation memory = checkThatItEnds(words, axioms, maxDepth, grammar, view);
   if (!memory.complete) return {std::move(memory), 0};
   memory.instances.resize(memory.terminals);
   spawn::DeriveOptions options;
   if (maxDepth) options.maxDepth = maxDepth;
+  options.view = view;
   options.vertices = layout;
   Reference reference;
   const auto begin = std::chrono::steady_clock::now();

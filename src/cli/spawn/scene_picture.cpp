@@ -18,6 +18,7 @@ void paintScene(const std::string& file, const SceneView& view, std::span<const 
     camera[c].x *= view.zoom;
     camera[c].y *= view.zoom;
   }
+  if (view.camera) camera = *view.camera;
   Painter painter(view.size.width, view.size.height);
   painter.sun(bounds);
   for (const auto& corners : triangles) painter.shadow(corners);

@@ -13,6 +13,7 @@
 #include "cli/tune/tuner.h"
 #include "host/files.h"
 #include "spawn/language/suggest.h"
+#include "spawn/schedule/camera.h"
 
 #include <gpgp/spawn.h>
 
@@ -37,6 +38,9 @@ struct SpawnOptions {
   std::string image, out;
   Size imageSize{1280, 720};
   float yaw = 35, pitch = 25, zoom = 1;
+  std::array<float, 6> camera{}; // position, and what it looks at
+  bool hasCamera = false;
+  float fov = 60, changed = 0, interval = 0;
   uint32_t maxInstances = 0, maxShapes = 0, maxDepth = 0, maxColliders = 0, slice = 0;
   std::string schedule = "default", output = "instances", matching = "off", queues = "mixed";
   bool sorted = false, nodes = false, instanced = false, string = false;
@@ -170,9 +174,26 @@ void addTriangles(Triangles& all, const std::vector<SpawnedVertex>& vertices, co
   }
 }
 
+/// World to clip, of --camera.
+glm::mat4 matrixOf(const SpawnOptions& options) {
+  const std::array<float, 6>& c = options.camera;
+  return viewFrom({c[0], c[1], c[2]}, {c[3], c[4], c[5]}, options.fov, options.imageSize.width,
+                  options.imageSize.height);
+}
+GpgpSpawnCamera cameraOf(const SpawnOptions& options) {
+  GpgpSpawnCamera camera{};
+  const glm::mat4 matrix = matrixOf(options);
+  for (int i = 0; i < 16; ++i) camera.viewProjection[i] = matrix[i / 4][i % 4];
+  std::copy_n(options.camera.begin(), 3, camera.position);
+  camera.height = options.imageSize.height;
+  return camera;
+}
+
 /// Terminals are coloured by the index that the grammar gives them, on a square of ground.
 void paint(const SpawnOptions& options, const Triangles& all, const spawn::Graph& graph) {
-  paintScene(options.image, {options.imageSize, options.yaw, options.pitch, options.zoom, 0}, all.corners,
+  SceneView view{options.imageSize, options.yaw, options.pitch, options.zoom, 0};
+  if (options.hasCamera) view.camera = matrixOf(options);
+  paintScene(options.image, view, all.corners,
              [&](size_t i) { return paletteColour(graph.terminals[all.terminals[i]].index); });
 }
 
@@ -359,6 +380,25 @@ uint32_t startNamed(const BakedGraph& grammar, const std::string& name) {
   throw Usage("--start " + name + ": there is no such rule" + suggestion.text());
 }
 
+/// --changed: some of the axioms, spread over all, get other seeds.
+Changes change(const SpawnOptions& options, const std::vector<GpgpAxiom>& axioms, Deriver& deriver,
+               const Grammar& grammar) {
+  std::map<uint32_t, GpgpAxiom> changed;
+  const size_t count = std::max<size_t>(size_t(double(axioms.size()) * options.changed / 100 + 0.5), 1);
+  for (size_t i = 0; i < count; ++i) {
+    const size_t number = i * axioms.size() / count;
+    GpgpAxiom axiom = axioms[number];
+    axiom.seed += 0x9e3779b9u;
+    changed.emplace(static_cast<uint32_t>(number), axiom);
+  }
+  const Changes changes = deriver.change(grammar, axioms, changed, options.repeat);
+  if (changes.moved || changes.foreign)
+    throw Failure("deriving some axioms anew changed " + std::to_string(changes.moved) +
+                  " instances of others, and wrote " + std::to_string(changes.foreign) +
+                  " that are not theirs; please report this");
+  return changes;
+}
+
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   if (std::any_of(options.grammars.begin(), options.grammars.end(), isCga)) return spawnFile(options, common);
   if (!options.style.empty() || !options.attributes.empty() || options.geographic || options.maxFaces ||
@@ -369,6 +409,8 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   if (options.string || options.maxModules) throw Usage("--string and --max-modules are for L-systems (.lsys)");
   const bool vertices = options.output == "vertices";
   if (vertices && options.sorted) throw Usage("--sorted is for --output instances");
+  if (options.changed > 0 && (vertices || options.sorted || options.slice || options.maxInstances))
+    throw Usage("--changed is for --output instances without --sorted, --slice and --max-instances");
   const BakedGraph grammar = bakeGraph(options.grammars, options.set);
   const spawn::Graph& graph = grammar.graph;
   const AxiomDefaults defaults{options.size, options.seed,
@@ -380,9 +422,13 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
                                 : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
   Session session(common);
   const Slices slices = slicesFor(options, start, graph, session);
+  std::optional<GpgpSpawnCamera> camera;
+  if (options.hasCamera) camera = cameraOf(options);
+  const auto view = spawn::viewOf(camera ? &*camera : nullptr);
+  if (!view) throw Usage(std::string("--camera: ") + view.error().text);
   const auto layout = spawn::layoutOf(Deriver::layout());
   const Reference reference =
-      evaluate(grammar.words, start, options.maxDepth, vertices ? &*layout : nullptr, joined(options.grammars));
+      evaluate(grammar.words, start, options.maxDepth, vertices ? &*layout : nullptr, joined(options.grammars), &*view);
   const Chosen chosen = chooseKernel(options, grammar, slices.of(0), session);
 
   DeriverOptions deriverOptions;
@@ -392,6 +438,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   deriverOptions.maxDepth = options.maxDepth;
   deriverOptions.maxColliders = options.maxColliders;
   deriverOptions.maxInstances = options.maxInstances;
+  deriverOptions.camera = camera;
   deriverOptions.expected =
       (vertices ? reference.result.vertexWords.size() * 4 / sizeof(SpawnedVertex) : reference.result.terminals) /
       slices.records;
@@ -437,10 +484,10 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
       Hopeless hopeless; // which the report does not tell from those that still waited
       if (measured.report.droppedShapes && reference.result.droppedShapes) {
         const spawn::Derivation own =
-            checkThatItEnds(grammar.words, slices.of(record), options.maxDepth, joined(options.grammars));
+            checkThatItEnds(grammar.words, slices.of(record), options.maxDepth, joined(options.grammars), &*view);
         hopeless = {own.droppedShapes - own.uncutShapes, own.uncutShapes};
       }
-      const auto depth = [&] { return depthOf(grammar.words, slices.of(record)); };
+      const auto depth = [&] { return depthOf(grammar.words, slices.of(record), &*view); };
       budgets = exceededBudgets(measured.report, hopeless, depth, deriver, vertices);
       if (!budgets.empty() && slices.records > 1)
         budgets.insert(0, "record " + std::to_string(record + 1) + " of " + std::to_string(slices.records) + ":\n");
@@ -464,6 +511,8 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
       instances.insert(instances.end(), written.begin(), written.end());
     }
   }
+  std::optional<Changes> changes;
+  if (options.changed > 0) changes = change(options, start, deriver, prepared);
   session.checkValidation();
 
   std::vector<std::string> bucketNames(std::max(graph.buckets, 1u));
@@ -527,6 +576,10 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     text << " (" << rate << " million terminals a second)";
   }
   text << '\n';
+  if (changes)
+    text << "derived anew: " << changes->changed << " of " << changes->instances << " instances in "
+         << milliseconds(changes->part.median()) << " instead of " << milliseconds(changes->whole.median())
+         << " for all; all others are where and what they were\n";
   if (!chosen.file.empty()) text << "kernel: " << chosen.file.string() << '\n';
   if (!options.image.empty()) text << "picture: " << options.image << '\n';
   if (!options.out.empty()) text << "triangles: " << options.out << '\n';
@@ -563,6 +616,11 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
                   {"passes", passes},
                   {"cpu_reference_terminals", reference.result.terminals},
                   {"cpu_reference_ms", reference.result.complete ? Json(reference.milliseconds) : Json()},
+                  {"changed", changes ? Json{{"instances", changes->changed},
+                                             {"of", changes->instances},
+                                             {"gpu_ms_median", changes->part.median()},
+                                             {"gpu_ms_median_of_all", changes->whole.median()}}
+                                      : Json()},
                   {"image", options.image.empty() ? Json() : Json(options.image)},
                   {"out", options.out.empty() ? Json() : Json(options.out)}};
   return outcome;
@@ -583,9 +641,14 @@ Work addSpawn(CLI::App& app) {
       ->add_option(
           "--axiom-file", options->axiomFile,
           "Start shapes from a file, CSV or JSON: position, rotation about Y or quaternion, or a whole transform; "
-          "size, seed, rule, shape, attribute")
+          "size, seed, rule, shape, attribute. Or GeoJSON: points, and lines with some at intervals")
       ->check(CLI::ExistingFile)
       ->excludes(axioms);
+  command
+      ->add_option("--interval", options->interval,
+                   "Metres between start shapes along lines of GeoJSON (default: their size along X)")
+      ->needs("--axiom-file")
+      ->check(within(1e-3, 1e9));
   command
       ->add_option_function<std::string>(
           "--axiom-size",
@@ -657,6 +720,24 @@ Work addSpawn(CLI::App& app) {
       ->needs(image)
       ->check(within(0.01, 1000.0))
       ->capture_default_str();
+  CLI::Option* camera =
+      command
+          ->add_option("--camera", options->camera,
+                       "A camera at X,Y,Z that looks at X,Y,Z, which CameraDistance(), ScreenSize() and OutOfView() "
+                       "ask; its picture has the size of --image-size, and --image shows what it sees")
+          ->delimiter(',')
+          ->type_name("X,Y,Z,X,Y,Z")
+          ->each([o = options.get()](const std::string&) { o->hasCamera = true; });
+  command->add_option("--fov", options->fov, "Its field of view from top to bottom, degrees")
+      ->needs(camera)
+      ->check(within(1, 170))
+      ->capture_default_str();
+  command
+      ->add_option("--changed", options->changed,
+                   "Also derive PERCENT of the axioms anew, with other seeds, in the instances of all; measured, and "
+                   "checked that all others stay as they are")
+      ->type_name("PERCENT")
+      ->check(within(1e-6, 100));
   CLI::Option* out =
       command
           ->add_option("--out", options->out,
@@ -672,7 +753,7 @@ Work addSpawn(CLI::App& app) {
                  "There, one node for all instances of a terminal and shape, by EXT_mesh_gpu_instancing")
       ->needs(out)
       ->excludes("--out-nodes");
-  addSize(*command, "--image-size", options->imageSize, "Size of that picture (default 1280x720)")->needs(image);
+  addSize(*command, "--image-size", options->imageSize, "Size of that picture (default 1280x720)");
   command
       ->add_option("--max-instances", options->maxInstances,
                    "Budget: instances or vertices written (0: as many as there are, as far as the device binds them)")

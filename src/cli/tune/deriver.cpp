@@ -175,8 +175,77 @@ Measured<GpgpSpawnReport> Deriver::measure(const Grammar& grammar, uint32_t repe
                               info.instances = instances_.range({}, kRead);
                             if (options_.sorted) info.draws = draws_.range({}, kRead);
                             if (options_.bounds) info.bounds = bounds_.range({}, kRead);
+                            if (options_.camera) info.camera = &*options_.camera;
                             return spawner.recordPrepare(commands, frame, info);
                           });
+}
+
+/// Ranges come back with their counts.
+Measured<GpgpSpawnReport> Deriver::measureRanges(const Grammar& grammar, const std::vector<GpgpAxiom>& axioms,
+                                                 std::vector<GpgpAxiomRange>& ranges, uint32_t repeat) {
+  const host::Buffer from = host::makeBuffer(session_.device(), axioms, kStorage, "axioms");
+  const host::Buffer zeroed = host::makeBuffer(session_.device(), ranges, kStorage, "ranges at first");
+  const host::Buffer own(session_.device(), zeroed.size(), kStorage, host::Memory::device, "ranges");
+  const GpgpAccess copied{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                          VK_IMAGE_LAYOUT_UNDEFINED};
+  auto measured =
+      session_.measure(*spawner_, "deriving", repeat,
+                       [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
+                         const VkBufferCopy all{0, 0, own.size()};
+                         vkCmdCopyBuffer(commands, zeroed.handle(), own.handle(), 1, &all);
+                         GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
+                         info.base = base;
+                         info.grammar = grammar.get();
+                         info.axioms = from.range();
+                         info.axiomCount = static_cast<uint32_t>(axioms.size());
+                         info.instances = instances_.range({}, kRead);
+                         info.ranges = own.range(copied, kRead);
+                         if (options_.camera) info.camera = &*options_.camera;
+                         return spawner_->recordPrepare(commands, frame, info);
+                       });
+  ranges = host::download<GpgpAxiomRange>(session_.device(), own, ranges.size());
+  return measured;
+}
+
+Changes Deriver::change(const Grammar& grammar, const std::vector<GpgpAxiom>& axioms,
+                        const std::map<uint32_t, GpgpAxiom>& changed, uint32_t repeat) {
+  std::vector<GpgpAxiom> others;
+  for (const auto& [number, axiom] : changed) others.push_back(axiom);
+  // Counted first, with ranges that hold nothing; then each range holds either of its axioms.
+  std::vector<GpgpAxiomRange> ranges(axioms.size()), part(others.size());
+  measureRanges(grammar, axioms, ranges, 1);
+  measureRanges(grammar, others, part, 1);
+  size_t next = 0;
+  for (const auto& [number, axiom] : changed) ranges[number].count = std::max(ranges[number].count, part[next++].count);
+  uint64_t size = 0;
+  for (GpgpAxiomRange& range : ranges) {
+    range = {static_cast<uint32_t>(size), range.count, 0, 0};
+    size += range.capacity;
+  }
+  if (size > mostElements()) throw Failure("this device does not bind " + std::to_string(size) + " instances at once");
+  makeOutput(std::max<uint64_t>(size, 1));
+  Changes changes;
+  changes.instances = size;
+  std::vector<GpgpAxiomRange> all = ranges;
+  changes.whole = measureRanges(grammar, axioms, all, repeat).times;
+  const auto before = host::download<GpgpInstance>(session_.device(), instances_, size);
+  next = 0;
+  for (const auto& [number, axiom] : changed) part[next++] = ranges[number];
+  changes.part = measureRanges(grammar, others, part, repeat).times;
+  const auto after = host::download<GpgpInstance>(session_.device(), instances_, size);
+  next = 0;
+  for (uint32_t i = 0; i < axioms.size(); ++i) {
+    const bool isChanged = changed.contains(i);
+    const uint32_t count = isChanged ? part[next++].count : all[i].count;
+    if (isChanged) changes.changed += count;
+    for (uint32_t k = ranges[i].first; k < ranges[i].first + count; ++k) {
+      if (isChanged)
+        changes.foreign += after[k].axiomId != axioms[i].id;
+      else
+        changes.moved += std::memcmp(&before[k], &after[k], sizeof after[k]) != 0;
+    }
+  }
+  return changes;
 }
 
 GpgpSpawnReport Deriver::fit(const Grammar& grammar) {

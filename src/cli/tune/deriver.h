@@ -4,18 +4,20 @@
 #include "cli/tune/kernels.h"
 
 #include <map>
+#include <optional>
 
 namespace gpgp::cli {
 
 struct DeriverOptions {
-  bool vertices = false;     ///< vertices and indices, not instances
-  bool sorted = false;       ///< instances by bucket, with draws
-  bool bounds = false;       ///< and a box around each bucket
-  uint32_t maxShapes = 0;    ///< 0: the library's default, and more where that is too little
-  uint32_t maxDepth = 0;     ///< 0: the library's default
-  uint32_t maxColliders = 0; ///< 0: as many as there are
-  uint64_t expected = 0;     ///< instances or vertices, where that is known: spares a second try
-  uint32_t maxInstances = 0; ///< 0: as many as there are, as far as the device binds them
+  bool vertices = false;                 ///< vertices and indices, not instances
+  bool sorted = false;                   ///< instances by bucket, with draws
+  bool bounds = false;                   ///< and a box around each bucket
+  uint32_t maxShapes = 0;                ///< 0: the library's default, and more where that is too little
+  uint32_t maxDepth = 0;                 ///< 0: the library's default
+  uint32_t maxColliders = 0;             ///< 0: as many as there are
+  uint64_t expected = 0;                 ///< instances or vertices, where that is known: spares a second try
+  std::optional<GpgpSpawnCamera> camera; ///< of all recordings
+  uint32_t maxInstances = 0;             ///< 0: as many as there are, as far as the device binds them
 };
 
 /// A vertex of `--output vertices`: position R32G32B32_SFLOAT, normal R8G8B8A8_SNORM, uv R32G32_SFLOAT, terminal and
@@ -27,6 +29,14 @@ struct SpawnedVertex {
   uint32_t terminal, axiom;
 };
 static_assert(sizeof(SpawnedVertex) == 32);
+
+/// What deriving some axioms anew costs beside deriving all.
+struct Changes {
+  GpuTimes whole, part;
+  uint64_t instances = 0, changed = 0; ///< of all ranges, and of those that were derived anew
+  uint64_t moved = 0;                  ///< instances of other ranges that are not what they were
+  uint64_t foreign = 0;                ///< instances of the ranges derived anew that are not of their axiom
+};
 
 class Deriver {
 public:
@@ -53,6 +63,11 @@ public:
   /// rounds: what is recorded at most; 0: what the budgets say.
   Measured<GpgpSpawnReport> measure(const Grammar& grammar, uint32_t repeat, uint32_t rounds = 0);
 
+  /// Derives the axioms into ranges of their own, then others in the place of some of them, by number, and nothing
+  /// else. Both are measured.
+  Changes change(const Grammar& grammar, const std::vector<GpgpAxiom>& axioms,
+                 const std::map<uint32_t, GpgpAxiom>& changed, uint32_t repeat);
+
   /// Instances or vertices that this device binds at once.
   uint64_t mostElements() const;
   uint32_t mostColliders() const;
@@ -68,6 +83,8 @@ public:
   uint64_t bytesWritten();
 
 private:
+  Measured<GpgpSpawnReport> measureRanges(const Grammar& grammar, const std::vector<GpgpAxiom>& axioms,
+                                          std::vector<GpgpAxiomRange>& ranges, uint32_t repeat);
   Spawner newSpawner(uint32_t rounds);
   void makeSpawner();
   void makeOutput(uint64_t elements);

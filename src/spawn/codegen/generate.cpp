@@ -161,6 +161,7 @@ private:
     const Attribute& attribute = attributeAt(code);
     const uint32_t place = code - attribute.code;
     std::string member = attribute.member;
+    if (code >= kCodeView) return "seenOf(s)." + member;
     if (attribute.axes == 2) member.back() = "XYZ"[place / 3]; // of axisX
     return "s." + member + (attribute.axes ? std::string(".") + "xyz"[place % 3] : std::string());
   }

@@ -6,13 +6,18 @@ namespace gpgp::spawn {
 namespace {
 using namespace shader;
 
+/// What the camera sees of a shape is as much code as so many others.
+constexpr uint32_t kSeenCodes = 24;
+
 /// Of an operator's expressions.
 uint32_t codesOf(const Graph& graph, const Node& node) {
   uint32_t codes = 0;
   for (uint32_t i = 0; i < node.parameterCount; ++i)
-    if (const Parameter& p = graph.parameters[node.firstParameter + i]; p.kind == kParameterProgram)
-      for (uint32_t at = p.value; graph.code[at] != kCodeEnd && codes < 8 * kRoom; ++at, ++codes)
+    if (const Parameter& p = graph.parameters[node.firstParameter + i]; hasProgram(p.kind))
+      for (uint32_t at = p.value; graph.code[at] != kCodeEnd && codes < 8 * kRoom; ++at, ++codes) {
+        if (graph.code[at] >= kCodeView) codes += kSeenCodes;
         if (graph.code[at] == kCodeNumber) ++at;
+      }
   return codes;
 }
 

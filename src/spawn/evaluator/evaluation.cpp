@@ -1,5 +1,7 @@
 #include "spawn/evaluator/evaluation.h"
 
+#include "spawn/schedule/camera.h"
+
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -254,12 +256,15 @@ core::Result<void> Evaluation::derive(const GpgpEvaluationInfo& info, const Vert
 core::Result<void> Evaluation::run(const GpgpEvaluationInfo& info, const VertexLayout* layout) {
   axioms_.resize(info.axiomCount, GpgpEvaluatedAxiom{});
   const TerminalFilter filter(info, &memory_);
+  const auto view = viewOf(info.camera);
+  if (!view) return view.error();
   Task task{grammar_,
             info,
             {.maxDepth = info.maxDepth ? info.maxDepth : 64,
              .keeps = !(info.flags & GPGP_EVALUATION_COUNT_ONLY),
              .filter = info.keys || info.region ? &filter : nullptr,
-             .vertices = layout},
+             .vertices = layout,
+             .view = &*view},
             info.maxShapesPerAxiom ? info.maxShapesPerAxiom : 1u << 27,
             axioms_.data(),
             LinkedColliders(&memory_)};

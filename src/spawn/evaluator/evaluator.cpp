@@ -14,7 +14,10 @@ public:
             Derivation& out)
       : axioms_(axioms), options_(options), out_(out), linked_(memory_), program_(decode(grammar.data(), memory_)),
         walker_(grammar.data(), program_, axioms, linked_, *this,
-                {.maxDepth = options.maxDepth, .keeps = options.keepInstances, .vertices = options.vertices},
+                {.maxDepth = options.maxDepth,
+                 .keeps = options.keepInstances,
+                 .vertices = options.vertices,
+                 .view = options.view},
                 out.buckets.data(), memory_) {}
 
   void run(uint32_t phases) {

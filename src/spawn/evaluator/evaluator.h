@@ -12,6 +12,7 @@ struct DeriveOptions {
   uint32_t maxDepth = 64;                 ///< recursive edges, as GpgpSpawnerCreateInfo
   bool keepInstances = true;              ///< false: only count
   const VertexLayout* vertices = nullptr; ///< instances come with their vertices
+  const shader::View* view = nullptr;     ///< of a camera (schedule/camera.h)
   uint64_t maxShapes = 100'000'000;       ///< gives up beyond, so that a grammar without end cannot hang the caller
 };
 

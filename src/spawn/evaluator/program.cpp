@@ -13,6 +13,7 @@ bool isConstant(const uint32_t* words, uint32_t parameter) { return words[parame
 /// Where a Shape has an attribute, as attributeOf() says.
 uint32_t sourceOf(uint32_t code) {
   if (code == kCodeSeed) return kSeed;
+  if (code >= kCodeView) return kSeen + code - kCodeView;
 #define GPGP_OFFSET(name, number, spelling, axes, value, member)                                                       \
   if (attributeAt(code).code == kCode##name) return uint32_t(offsetof(Shape, member)) + 4 * (code - kCode##name);
   GPGP_ATTRIBUTE_TABLE(GPGP_OFFSET)
@@ -140,6 +141,8 @@ Program decode(const uint32_t* words, std::pmr::memory_resource* memory) {
     for (uint32_t shape = 0; step.op == kOpSubDiv && shape < kShapeCount; ++shape)
       step.cuts = step.cuts || ((node[kNodeShapes] >> shape & 1) && isCut(shape, step.argument));
     step.parameters = node[kNodeParameters];
+    for (uint32_t i = 0; i < node[kNodeParameterCount]; ++i)
+      step.sees = step.sees || words[step.parameters + i * kParameterSize] == kParameterView;
     step.wayCount = node[kNodeEdgeCount];
     step.ways = program.ways.data() + program.ways.size();
     for (uint32_t e = 0; e < step.wayCount; ++e) {

@@ -30,12 +30,13 @@ struct Way { ///< along an edge
 };
 
 /// What a term is, beside offsets of a Shape's floats.
-enum : uint32_t { kNumber = 0xffffff00u, kSeed, kDrawn };
+enum : uint32_t { kNumber = 0xffffff00u, kSeed, kDrawn, kSeen };
 
 /// Of an expression that goes from left to right: a number or an attribute, and how it joins what stands before it.
 struct Term {
   uint32_t code;   ///< kCodeAdd to kCodeRandom; kCodeEnd behind the last term
-  uint32_t source; ///< offset in Shape, or: kNumber; kSeed: the seed's fraction; kDrawn: number + range * what it draws
+  uint32_t source; ///< offset in Shape, or: kNumber; kSeed: the seed's fraction; kDrawn: number + range * what it
+                   ///< draws; from kSeen on: what the camera sees, as codes from kCodeView on
   float number, range;
   uint32_t draw; ///< of kDrawn or kCodeRandom: the number of what it draws
 };
@@ -47,6 +48,7 @@ struct Step {
   uint32_t node = 0;   ///< word offset
   bool filter = false; ///< kNodeFilter
   bool draws = false;  ///< kNodeDraws
+  bool sees = false;   ///< a parameter asks the camera
   bool cuts = false;   ///< SubDiv to which shapes can come that it cuts
   uint32_t argument = 0, argument2 = 0;
   const Way* ways = nullptr;

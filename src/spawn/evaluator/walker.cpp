@@ -105,16 +105,23 @@ float Walker::expression(const Shape& s, const Step& step, uint32_t terms, uint3
   }
   return result;
 }
-float Walker::operand(const Term& term, const Shape& s) {
+float Walker::operand(const Term& term, const Shape& s) const {
   if (term.source == kNumber) return term.number;
   if (term.source == kDrawn) return add(term.number, multiply(term.range, drawnNumber(s.key, term.draw)));
   if (term.source == kSeed) return unitFloat(s.seed);
+  if (term.source >= kSeen) return seenValue(seen(s), kCodeView + (term.source - kSeen));
   float attribute;
   std::memcpy(&attribute, reinterpret_cast<const char*>(&s) + term.source, sizeof attribute);
   return attribute;
 }
 [[gnu::noinline]] float Walker::evaluateWords(const Shape& s, uint32_t at, uint32_t index) const {
-  return evaluate(words_, s, at, index);
+  return evaluate(words_, s, at, index, words_[at] == kParameterView ? seen(s) : Seen{});
+}
+[[gnu::noinline]] Seen Walker::seen(const Shape& s) const {
+  if (!options_.view) return seenFromNowhere();
+  const float* t = axioms_[context.axiomNumber(s.axiom)].transform;
+  return seenBy(*options_.view, s, vec4(t[0], t[1], t[2], t[3]), vec4(t[4], t[5], t[6], t[7]),
+                vec4(t[8], t[9], t[10], t[11]));
 }
 vec2 Walker::angle(const Step& step, const Shape& s, uint32_t i) const {
   return step.variable >> i & 1 ? sineCosineDegrees(value(step, s, i)) : step.angles[i];
@@ -168,7 +175,7 @@ case kOp##name: call; break;
     case kOpIfSizeLess: way = component(s.size, step.argument) < value(step, s, 0) ? 0 : 1; break;
     case kOpRandomRule:
       s.node = step.node;
-      way = chooseEdge(words_, s, kOpRandomRule);
+      way = chooseEdge(words_, s, kOpRandomRule, step.sees ? seen(s) : Seen{});
       break;
     case kChoose: {
       const float chance = value(step, s, 0), x = multiply(subtract(chance, floor(chance)), step.total);

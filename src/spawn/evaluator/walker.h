@@ -53,6 +53,7 @@ struct WalkOptions {
   bool keeps = true; ///< false: only count
   const Filter* filter = nullptr;
   const VertexLayout* vertices = nullptr;
+  const shader::View* view = nullptr; ///< of the camera; null: there is none
 };
 
 /// A shape before the operator that step says; where that multiplies it, what it makes of it.
@@ -91,7 +92,8 @@ public:
 private:
   float value(const Step& step, const shader::Shape& s, uint32_t i) const;
   float expression(const shader::Shape& s, const Step& step, uint32_t terms, uint32_t index) const;
-  static float operand(const Term& term, const shader::Shape& s);
+  float operand(const Term& term, const shader::Shape& s) const;
+  shader::Seen seen(const shader::Shape& s) const;
   float evaluateWords(const shader::Shape& s, uint32_t at, uint32_t index) const;
   shader::vec2 angle(const Step& step, const shader::Shape& s, uint32_t i) const;
   shader::vec3 values(const Step& step, const shader::Shape& s) const;

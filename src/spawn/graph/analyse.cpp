@@ -172,7 +172,7 @@ uint32_t outputOf(const Node& node, uint32_t edge, uint32_t shape) {
 }
 
 uint32_t drawsOf(const Graph& graph, const Parameter& parameter) {
-  if (parameter.kind != kParameterProgram) return 0;
+  if (!hasProgram(parameter.kind)) return 0;
   uint32_t draws = 0;
   for (uint32_t at = parameter.value; graph.code[at] != kCodeEnd; ++at) {
     if (graph.code[at] == kCodeNumber)

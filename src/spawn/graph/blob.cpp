@@ -73,7 +73,7 @@ std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resour
   for (const Edge& e : graph.edges)
     words.insert(words.end(), {nodeAt(e.target) | (e.recursive ? kEdgeRecursive : 0u), e.multiplicity, e.shapes});
   for (const Parameter& p : graph.parameters)
-    words.insert(words.end(), {p.kind, p.kind == kParameterProgram ? at(kSectionCode, p.value) : p.value});
+    words.insert(words.end(), {p.kind, hasProgram(p.kind) ? at(kSectionCode, p.value) : p.value});
   words.insert(words.end(), graph.code.begin(), graph.code.end());
   for (const Polygon& p : graph.polygons)
     words.insert(words.end(),
@@ -150,7 +150,7 @@ Result<Graph> load(std::span<const std::byte> bytes, std::pmr::memory_resource* 
   graph.parameters.reserve(counts[kSectionParameters]);
   for (uint32_t i = 0; i < counts[kSectionParameters]; ++i) {
     const uint32_t* w = entry(kSectionParameters, i);
-    graph.parameters.push_back({w[0], w[0] == kParameterProgram ? indexOf(kSectionCode, w[1], 0) : w[1]});
+    graph.parameters.push_back({w[0], hasProgram(w[0]) ? indexOf(kSectionCode, w[1], 0) : w[1]});
   }
   graph.code.assign(entry(kSectionCode, 0), entry(kSectionCode, counts[kSectionCode]));
   for (uint32_t i = 0; i < counts[kSectionPolygons]; ++i) {

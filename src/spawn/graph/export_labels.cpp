@@ -33,6 +33,7 @@ const char* facesText(const Node& node, uint32_t slot) {
 
 std::string programText(const Graph& graph, uint32_t at) {
   std::vector<std::string> stack;
+  const uint32_t first = at;
   bool isLeaf = true;
   for (uint32_t code = graph.code[at]; code != kCodeEnd; code = graph.code[at]) {
     ++at;
@@ -52,7 +53,8 @@ std::string programText(const Graph& graph, uint32_t at) {
       left = std::move(joined);
     }
   }
-  return isLeaf ? std::string("Exp(").append(stack.back()).append(")") : stack.back();
+  const bool isOne = isLeaf && graph.code[first] < kCodeView; // as a program, which what the camera sees always is
+  return isOne ? std::string("Exp(").append(stack.back()).append(")") : stack.back();
 }
 } // namespace
 

@@ -53,7 +53,7 @@ private:
     d_.structure.push_back(p.kind);
     if (p.kind == kParameterConstant) value({position, SlotKind::constant, index}, p.value);
     if (p.kind == kParameterAttribute) d_.structure.push_back(p.value);
-    if (p.kind != kParameterProgram) return;
+    if (!hasProgram(p.kind)) return;
     for (uint32_t word = 0;; ++word) {
       const uint32_t code = graph_.code[p.value + word];
       d_.structure.push_back(code);

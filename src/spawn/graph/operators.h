@@ -80,13 +80,13 @@ inline constexpr Binary kBinaries[] = {
 constexpr const Binary& binaryOf(uint32_t code) { return kBinaries[code - shader::kCodeAdd]; }
 static_assert(binaryOf(shader::kCodeRandom).code == shader::kCodeRandom);
 
-/// Codes of a function of no, one or two axes.
+/// Codes of a function of no, one or two axes: attributes of the shape, then what the camera sees of it.
 struct Attribute {
   const char* name;
   uint32_t code; ///< the first one
   uint32_t axes;
   GpgpGrammarValueId value; ///< the first one
-  const char* member;       ///< of Shape
+  const char* member;       ///< of Shape, or from kCodeView on of Seen
 
   constexpr uint32_t count() const { return axes == 0 ? 1 : axes == 1 ? 3 : 9; }
 };
@@ -94,6 +94,9 @@ inline constexpr Attribute kAttributes[] = {
 #define GPGP_ATTRIBUTE(name, number, spelling, axes, value, member) {spelling, number, axes, value, #member},
     GPGP_ATTRIBUTE_TABLE(GPGP_ATTRIBUTE)
 #undef GPGP_ATTRIBUTE
+#define GPGP_SEEN(name, number, spelling, value, member) {spelling, number, 0, value, #member},
+        GPGP_VIEW_TABLE(GPGP_SEEN)
+#undef GPGP_SEEN
 };
 constexpr const Attribute& attributeAt(uint32_t code) {
   for (const Attribute& a : kAttributes)

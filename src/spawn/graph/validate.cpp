@@ -33,12 +33,13 @@ bool isSettled(uint32_t bits) {
   return bits == 0 || (exponent >= 27 && exponent <= 226) || (bits & 0x7fffffffu) == 0x71800000u;
 }
 
-/// Programs lie back to back in the code; marks where they start. Linear in the code's size.
+/// Programs lie back to back in the code; marks where they start, by the kind of a parameter that has it. Linear in the
+/// code's size.
 Result<void> checkCode(const Graph& graph, std::pmr::vector<uint8_t>& starts) {
   size_t at = 0;
   while (at < graph.code.size()) {
     const size_t start = at;
-    starts[start] = 1;
+    starts[start] = kParameterProgram;
     uint32_t depth = 0;
     for (;;) {
       if (at >= graph.code.size()) return makeError(GPGP_ERROR_INVALID_DATA, "program %zu has no end", start);
@@ -50,6 +51,7 @@ Result<void> checkCode(const Graph& graph, std::pmr::vector<uint8_t>& starts) {
         ++at;
         ++depth;
       } else if (code >= kCodeAttributes && code < kCodeCount) {
+        if (code >= kCodeView) starts[start] = kParameterView;
         ++depth;
       } else if (code >= kCodeAdd && code <= kCodeRandom) { // kBinaries
         if (depth < 2) return makeError(GPGP_ERROR_INVALID_DATA, "program %zu takes from an empty stack", start);
@@ -142,10 +144,10 @@ Result<void> validate(const Graph& graph) {
     if (parameter.kind == kParameterConstant) {
       if (!isSettled(parameter.value)) return makeError(GPGP_ERROR_INVALID_DATA, "a parameter is not a usable number");
     } else if (parameter.kind == kParameterAttribute) {
-      if (parameter.value < kCodeAttributes || parameter.value >= kCodeCount)
+      if (parameter.value < kCodeAttributes || parameter.value >= kCodeView)
         return makeError(GPGP_ERROR_INVALID_DATA, "a parameter is an unknown attribute");
-    } else if (parameter.kind == kParameterProgram) {
-      if (parameter.value >= starts.size() || !starts[parameter.value])
+    } else if (hasProgram(parameter.kind)) {
+      if (parameter.value >= starts.size() || starts[parameter.value] != parameter.kind)
         return makeError(GPGP_ERROR_INVALID_DATA, "a parameter has no program");
     } else {
       return makeError(GPGP_ERROR_INVALID_DATA, "a parameter has an unknown kind");

@@ -93,7 +93,7 @@ void appendGraph(const Graph& part, const std::string& name, Graph& graph, Tags&
     graph.edges.push_back(e);
   }
   for (Parameter p : part.parameters) {
-    if (p.kind == kParameterProgram) p.value += firstCode;
+    if (hasProgram(p.kind)) p.value += firstCode;
     graph.parameters.push_back(p);
   }
   graph.code.insert(graph.code.end(), part.code.begin(), part.code.end());

@@ -69,6 +69,7 @@ ExpressionCompiler::Code ExpressionCompiler::attribute(const Expression& express
   if (!known) return number(0);
   Code result;
   result.words = {code};
+  result.seesView = code >= kCodeView;
   result.stack = 1;
   return result;
 }
@@ -91,6 +92,7 @@ ExpressionCompiler::Code ExpressionCompiler::join(Place place, uint32_t op, Code
   result.words = std::move(left.words);
   result.words.insert(result.words.end(), right.words.begin(), right.words.end());
   result.words.push_back(op);
+  result.seesView = left.seesView || right.seesView;
   result.stack = std::max(left.stack, right.stack + 1);
   if (result.stack > kMaxStack) {
     diagnostics_.error(place, "this expression needs more than " + std::to_string(kMaxStack) +
@@ -167,11 +169,12 @@ Parameter ExpressionCompiler::drawnParameter() { return parameter(join({}, kCode
 
 Parameter ExpressionCompiler::parameter(Code code) {
   if (code.isConstant) return {kParameterConstant, floatBitsToUint(code.value)};
-  if (code.words.size() == 1) return {kParameterAttribute, code.words[0]};
+  const bool sees = code.seesView;
+  if (code.words.size() == 1 && !sees) return {kParameterAttribute, code.words[0]};
   code.words.push_back(kCodeEnd);
   const auto [program, isNew] = programs_.try_emplace(code.words, static_cast<uint32_t>(graph_.code.size()));
   if (isNew) graph_.code.insert(graph_.code.end(), code.words.begin(), code.words.end());
-  return {kParameterProgram, program->second};
+  return {sees ? kParameterView : kParameterProgram, program->second};
 }
 
 float ExpressionCompiler::constant(const Expression& expression, const char* what) {

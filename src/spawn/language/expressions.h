@@ -29,6 +29,7 @@ private:
     std::vector<uint32_t> words;
     uint32_t stack = 0;
     bool isConstant = false;
+    bool seesView = false; ///< it has codes from kCodeView on
     float value = 0;
   };
   Parameter parameter(Code code);

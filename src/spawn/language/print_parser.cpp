@@ -352,7 +352,7 @@ private:
   void parameter() {
     Value v = value();
     Parameter p{v.kind, v.words.back()};
-    if (v.kind == kParameterProgram) {
+    if (hasProgram(v.kind)) {
       v.words.push_back(kCodeEnd);
       const auto [program, isNew] = programs_.try_emplace(v.words, static_cast<uint32_t>(graph_.code.size()));
       if (isNew) graph_.code.insert(graph_.code.end(), v.words.begin(), v.words.end());
@@ -382,7 +382,7 @@ private:
     if (word.text == "Exp") {
       Value inner = value(depth + 1);
       expect(TokenKind::close, "')'");
-      return {std::move(inner.words), kParameterProgram};
+      return {std::move(inner.words), std::max(inner.kind, kParameterProgram)};
     }
     for (const Binary& binary : kBinaries) {
       if (binary.precedence || word.text != binary.spelling) continue;
@@ -400,14 +400,14 @@ private:
     }
     if (attribute->axes) code += axis();
     expect(TokenKind::close, "')'");
-    return {{code}, kParameterAttribute};
+    return {{code}, code >= kCodeView ? kParameterView : kParameterAttribute};
   }
 
   Value close(Value left, uint32_t op, const Value& right) {
     expect(TokenKind::close, "')'");
     left.words.insert(left.words.end(), right.words.begin(), right.words.end());
     left.words.push_back(op);
-    return {std::move(left.words), kParameterProgram};
+    return {std::move(left.words), std::max({left.kind, right.kind, kParameterProgram})};
   }
 
   uint32_t binary() {

@@ -42,6 +42,7 @@ PassBuilder::PassBuilder(const SpawnerSizes& spawner, const core::Device& owner,
   list.add({"bounds", buffer, 0, true});
   list.add({"bound keys", scratch, sizeof(uint32_t) * shader::kMaxBuckets * shader::kBoundWords});
   list.add({"report", core::ResourceKind::report});
+  list.add({"ranges", buffer, 0, true});
   list.report = shader::kBindCounters;
   list.reportBytes = sizeof(shader::SpawnState);
 }

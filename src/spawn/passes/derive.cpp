@@ -38,7 +38,8 @@ void addDerive(PassBuilder& b) {
       {shader::kBindDraws, readWrite},     {shader::kBindQueues, readWrite},    {shader::kBindStacks, readWrite},
       {shader::kBindRecords, write},       {shader::kBindCounters, readWrite},  {shader::kBindBuckets, readWrite},
       {shader::kBindConstants, read},      {shader::kBindColliders, readWrite}, {shader::kBindColliderCells, read},
-      {shader::kBindCount, write},         {shader::kBindAxiomCounter, read},   {shader::kBindReport, write}};
+      {shader::kBindCount, write},         {shader::kBindAxiomCounter, read},   {shader::kBindReport, write},
+      {shader::kBindRanges, readWrite}};
   for (uint32_t phase = 0; phase < b.sizes.phases(); ++phase) {
     const uint32_t first = phase * b.sizes.phaseStride();
     if (phase == 0)

@@ -1,6 +1,7 @@
 #include "spawn/schedule/spawner.h"
 
 #include "core/turns.h"
+#include "spawn/schedule/camera.h"
 #include "spawn/schedule/fits.h"
 #include "spawn/shared/layout.h"
 #include "spawn/shared/shape.h"
@@ -15,9 +16,12 @@ namespace {
 
 // The shaders read and write these as uvec4[6].
 static_assert(sizeof(GpgpAxiom) == 96 && offsetof(GpgpAxiom, size) == 48 && offsetof(GpgpAxiom, id) == 64);
+static_assert(sizeof(GpgpAxiomRange) == 4 * shader::kRangeWords && offsetof(GpgpAxiomRange, capacity) == 4 &&
+              offsetof(GpgpAxiomRange, count) == 8);
 static_assert(sizeof(GpgpInstance) == 96 && offsetof(GpgpInstance, bucket) == 48 && offsetof(GpgpInstance, size) == 80);
 static_assert(sizeof(GpgpCompactInstance) == 32 && offsetof(GpgpCompactInstance, scale) == 16 &&
               offsetof(GpgpCompactInstance, rotation) == 24);
+static_assert(offsetof(shader::SpawnConstants, view) % 16 == 0, "std140 aligns structs so");
 static_assert(sizeof(VkDrawIndexedIndirectCommand) == 4 * shader::kDrawWords);
 
 /// Shared memory of derive.glsl: for each invocation a parent's fan and two sums; with queues their lists.
@@ -135,7 +139,10 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   const bool sorted =
       !vertices() &&
       (inOrder || (!counts && !regions && (sizes_.compact || (info.draws.buffer && grammar.graph.buckets > 1))));
+  const auto view = viewOf(info.camera);
+  if (!view) return view.error();
   shader::SpawnConstants constants{};
+  constants.view = *view;
   constants.axiomCount = info.axiomCount;
   constants.readsAxiomCounter = info.axiomCounter.buffer ? 1 : 0;
   constants.instanceCapacity = static_cast<uint32_t>(info.instances.buffer ? info.instances.size / instanceBytes() : 0);
@@ -150,7 +157,8 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   constants.spread = fit.spread;
   constants.balances = fit.balances;
   constants.reports = info.axiomCount && phases == 1 && !vertices() && !counts && !sorted && !inOrder && !regions &&
-                      !info.firstInstance;
+                      !info.firstInstance && !info.ranges.buffer;
+  constants.byAxiom = info.ranges.buffer ? 1 : 0;
   const Expansion expansion =
       context.device.software ? expansionOf(grammar.turns) : Expansion{shader::kSpawnGroupSize, 1};
   constants.recordsAtOnce = expansion.records;
@@ -201,6 +209,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.bindings[shader::kBindDraws].engineBuffer = &info.draws;
   record.bindings[shader::kBindCount].engineBuffer = &info.count;
   record.bindings[shader::kBindNeeded].engineBuffer = &info.needed;
+  record.bindings[shader::kBindRanges].engineBuffer = &info.ranges;
   if (info.vertices) {
     record.bindings[shader::kBindVertices].engineBuffer = &info.vertices->vertices;
     record.bindings[shader::kBindIndices].engineBuffer = &info.vertices->indices;

@@ -25,10 +25,10 @@ uint32_t longestChain(const Graph& graph) {
   return *std::max_element(before.begin(), before.end()) + 1;
 }
 
-/// Of a program's codes.
+/// Of a program's codes, and of the loop before them, which has a turn where the camera is asked.
 uint32_t lengthOf(const Graph& graph, const Parameter& parameter) {
-  uint32_t codes = 0;
-  if (parameter.kind != kParameterProgram) return codes;
+  if (!hasProgram(parameter.kind)) return 0;
+  uint32_t codes = parameter.kind - kParameterProgram + 1;
   for (uint32_t at = parameter.value; graph.code[at] != kCodeEnd; ++at, ++codes)
     if (graph.code[at] == kCodeNumber) ++at;
   return std::min(codes, kDeviceTurns); // more is as bad

@@ -185,6 +185,7 @@ core::Result<void> TileSet::record(VkCommandBuffer commandBuffer, const GpgpTile
   spawn.axioms = info.axioms;
   spawn.hostAxioms = info.hostAxioms;
   spawn.axiomCount = info.axiomCount;
+  spawn.camera = info.camera;
   spawn.draws = drawsOf(slot);
   if (isVertices_) {
     output.vertices = part(vertices_, bytesEach_ * first, bytesEach_ * room);
