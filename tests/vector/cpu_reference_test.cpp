@@ -703,6 +703,14 @@ struct PageCpuReferenceTest : CpuTest {
   static float d0(Dice& dice) { return dice.oneIn(2) ? 0.0f : dice.between(-1, 1); }
 };
 
+/// Patches that are asked by squares of tiles.
+struct PatchPageCpuReferenceTest : PageCpuReferenceTest {
+  PatchPageCpuReferenceTest() {
+    canvasMethod = GPGP_CANVAS_PATCHES;
+    drawingMethods = GPGP_DRAWING_FLATTENED | GPGP_DRAWING_PATCHES;
+  }
+};
+
 TEST_F(CpuTest, RandomRecordsAreWhatTheCpuReferenceSays) {
   const uint32_t first = numberFrom("GPGP_TEST_FIRST_SEED", 0), count = numberFrom("GPGP_TEST_SEEDS", 64);
   for (uint32_t seed = first; seed < first + count && !HasFatalFailure(); ++seed) {
@@ -715,13 +723,25 @@ TEST_F(CpuTest, RandomRecordsAreWhatTheCpuReferenceSays) {
 }
 
 TEST_F(PatchCpuReferenceTest, RandomRecordsAreWhatTheCpuReferenceSays) {
-  const uint32_t first = numberFrom("GPGP_TEST_FIRST_SEED", 0), count = numberFrom("GPGP_TEST_SEEDS", 12);
+  const uint32_t first = numberFrom("GPGP_TEST_FIRST_SEED", 0), count = numberFrom("GPGP_TEST_SEEDS", 10);
   for (uint32_t seed = first; seed < first + count && !HasFatalFailure(); ++seed) {
     RandomRecord record;
     makeRecord(seed, record);
     check(record);
   }
   EXPECT_GT(patched, count / 2);
+}
+
+TEST_F(PatchPageCpuReferenceTest, PagesAreWhatTheCpuReferenceSays) {
+  const uint32_t first = numberFrom("GPGP_TEST_FIRST_SEED", 0), count = numberFrom("GPGP_TEST_SEEDS", 6);
+  uint32_t squares = 0;
+  for (uint32_t seed = first; seed < first + count && !HasFatalFailure(); ++seed) {
+    RandomRecord record;
+    makePage(seed, record);
+    check(record);
+    squares += read<CanvasCounters>("counters", 1)[0].patchBlocks;
+  }
+  EXPECT_GT(squares, 10u);
 }
 
 TEST_F(PageCpuReferenceTest, PagesAreWhatTheCpuReferenceSays) {
