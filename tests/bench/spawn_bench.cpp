@@ -1036,7 +1036,8 @@ TABLE is one of
               execution group. Rows: the cases' names; --published FOLDER: also the grammars of the 2016 paper there
   rivals      samples/rivals: scenes of the kind that GPU work graphs derive every frame. Rows: market wood
   heuristics  table 4.1, with one stack and with queues: pairs of schedules, a heuristic's edges as it says against
-              inverted, all others random, with a paired t-test, at 1, 64, 128 and 256 axioms. Rows: H1 H2 H3. --pairs N (default 384, as published)
+              inverted, all others random, with a paired t-test, at 1, 64, 128 and 256 axioms. Rows: H1 H2 H3.
+              --pairs N (default 384, as published)
 ROW is a part of a row's name. --share F takes that part of each case's axioms; --quick is a short form of all.
 --exhaustive N (default 64): the most kernels of a case that `schedules` measures all of; overview has 577,
 simple_house 257, menger_sponge_3 21. --seconds N bounds each table: what would probably take longer is left out and
