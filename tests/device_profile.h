@@ -12,7 +12,7 @@ namespace gpgp::test {
 
 struct DeviceProfile {
   const char* name;
-  VkPhysicalDeviceType type; ///< what the library chooses passes by
+  VkPhysicalDeviceType type;              ///< what the library chooses passes by
   uint32_t storageBuffers, storageImages; ///< a stage
   uint32_t storageRange;                  ///< bytes
   bool dynamicRendering, int64Atomics, multiview;

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds everything and runs all tests: release, then what tests run again in other forms (on
 # a second device, by passes of other devices, with fewer services), then a build of all but the tests with the second
-# compiler, then libgpgp for Windows under Wine, then all again under AddressSanitizer and UndefinedBehaviorSanitizer.
+# compiler, then libgpgp for Windows under Wine, then loading threads under ThreadSanitizer, then all again under
+# AddressSanitizer and UndefinedBehaviorSanitizer.
 # Works as root or through sudo, asks nothing, can be run again. Ends with a summary; exits 1 where anything failed.
 #
 #   tests/run.sh            everything
@@ -100,6 +101,9 @@ if [[ $quick == no ]]; then
   fi
   if hasTimeFor 75 "Windows, under Wine"; then
     step "Windows, under Wine (tests/windows.sh)" windowsUnderWine || true
+  fi
+  if hasTimeFor 15 "ThreadSanitizer"; then
+    step "ThreadSanitizer (tests/sanitizers/tsan.sh)" tests/sanitizers/tsan.sh "$(jobCount)" || true
   fi
   if hasTimeFor 170 "build and tests, asan-ubsan"; then buildAndTest asan-ubsan; fi
 fi

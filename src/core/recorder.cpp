@@ -90,17 +90,6 @@ Result<void> Recorder::init(PassList passes, std::span<const DrawShaders> draws)
     images += ofResource == ResourceKind::image;
     uniforms += ofResource == ResourceKind::uniforms;
   }
-  const struct {
-    uint32_t bound, most;
-    const char *what, *limit;
-  } counts[] = {{resourceCount - images - textures - uniforms, device.limits.maxPerStageDescriptorStorageBuffers,
-                 "storage buffers", "maxPerStageDescriptorStorageBuffers"},
-                {images, device.limits.maxPerStageDescriptorStorageImages, "storage images",
-                 "maxPerStageDescriptorStorageImages"}};
-  for (const auto& count : counts)
-    if (count.bound > count.most)
-      return makeError(GPGP_ERROR_UNSUPPORTED, "a %s binds %u %s, but this device binds at most %u (%s)",
-                       kindName(kind), count.bound, count.what, count.most, count.limit);
   VkDescriptorSetLayoutCreateInfo setInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   setInfo.bindingCount = resourceCount - textures;
   setInfo.pBindings = bindings.data();

@@ -35,7 +35,9 @@ struct BakedFiles : testing::Test {
   }
 
   using Load = std::function<GpgpResult(const void*, size_t, GpgpAsset*)>;
-  template <class Info> static Load loads(GpgpContext context, GpgpResult(GPGP_CALL* create)(GpgpContext, const Info*, GpgpAsset*), Info info) {
+  template <class Info>
+  static Load loads(GpgpContext context, GpgpResult(GPGP_CALL* create)(GpgpContext, const Info*, GpgpAsset*),
+                    Info info) {
     return [context, create, info](const void* data, size_t size, GpgpAsset* asset) {
       Info own = info;
       own.data = data;
@@ -78,7 +80,8 @@ struct BakedFiles : testing::Test {
     }
     for (size_t size = 1; size < good.size(); size += next(size, 211)) {
       if (std::count(ends.begin(), ends.end(), size)) continue;
-      const Bytes cut(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)); // a sanitizer sees what is beyond
+      const Bytes cut(good.begin(),
+                      good.begin() + static_cast<std::ptrdiff_t>(size)); // a sanitizer sees what is beyond
       expectRefused(load, cut.data(), cut.size(), "cut to", size);
       if (HasFatalFailure()) return;
     }

@@ -89,8 +89,7 @@ GpgpResult createGeometrySet(GpgpContext context, uint32_t number, GpgpAsset* as
 using Create = GpgpResult (*)(GpgpContext, uint32_t, GpgpAsset*);
 constexpr Create kCreates[] = {
 #if defined(GPGP_WITH_VECTOR)
-    createDrawing,
-    createGlyphSet,
+    createDrawing,     createGlyphSet,
 #if defined(GPGP_WITH_COMPILER)
     createLottieFrame,
 #endif
@@ -208,7 +207,8 @@ TEST(Threads, FramesAreRecordedBesideLoaders) {
     ASSERT_EQ(made->prewarm(), GPGP_SUCCESS);
     scenarios.push_back(std::move(made));
   }
-  while (beside.next() > 0) {}
+  while (beside.next() > 0) {
+  }
   const auto frame = [&] {
     beside.next();
     beside.device.submitAndWait([&](VkCommandBuffer cmd) {

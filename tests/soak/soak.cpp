@@ -7,6 +7,7 @@
 // --plain: without the validation layer, for long runs. Ends with 1 where memory grew, a picture changed that should
 // not, a call failed that should not, or a validation message came.
 #include "api/aligned.h"
+#include "api/counting_new.h"
 #include "api/scenarios.h"
 #include "host/frames.h"
 
@@ -127,7 +128,7 @@ public:
   int run() {
     const uint64_t every = std::max<uint64_t>(options_.frames / 200, 1);
     std::FILE* csv = options_.csv ? std::fopen(options_.csv, "w") : nullptr;
-    if (csv) std::fprintf(csv, "frame,host bytes,device bytes,resident bytes\n");
+    if (csv) std::fprintf(csv, "frame,host bytes,device bytes,resident bytes,blocks of operator new\n");
     for (number_ = 1; number_ <= options_.frames; ++number_) {
       frame();
       if (!messages_.empty()) fail(number_, messages_.front());
@@ -139,9 +140,9 @@ public:
       const int64_t resident = residentBytes();
       if (number_ > options_.frames / 10) residentMost_[half()] = std::max(residentMost_[half()], resident);
       if (csv)
-        std::fprintf(csv, "%llu,%lld,%lld,%lld\n", static_cast<unsigned long long>(number_),
+        std::fprintf(csv, "%llu,%lld,%lld,%lld,%lld\n", static_cast<unsigned long long>(number_),
                      static_cast<long long>(memory_.hostBytes), static_cast<long long>(memory_.deviceBytes),
-                     static_cast<long long>(resident));
+                     static_cast<long long>(resident), static_cast<long long>(livingNews()));
     }
     if (csv) std::fclose(csv);
     ring_.waitAll();
@@ -179,7 +180,8 @@ private:
   }
   void check(GpgpResult result, const char* what) {
     if (result != GPGP_SUCCESS)
-      fail(number_, std::string(what) + ": " + gpgpResultString(result) + (messages_.empty() ? "" : ", " + messages_.back()));
+      fail(number_,
+           std::string(what) + ": " + gpgpResultString(result) + (messages_.empty() ? "" : ", " + messages_.back()));
   }
   /// Creation under the cap: done, or refused for want of device memory.
   bool made(GpgpResult result, const char* what) {
@@ -406,7 +408,8 @@ private:
       const uint64_t last = ring_.frame().current + (++extra_);
       results[0] = once(*scenario, context_, {last, last - 1});
       results[1] = once(*other, fresh, {1, 0});
-      if (results[0] != results[1]) fail(number_, std::string(scenario->name()) + " has another result than a fresh one");
+      if (results[0] != results[1])
+        fail(number_, std::string(scenario->name()) + " has another result than a fresh one");
       gpgpDestroyContext(fresh);
       other->asset = other->secondAsset = nullptr, other->recorder = nullptr, other->view = nullptr;
     }

@@ -5,6 +5,12 @@
 
 namespace gpgp::vector::lottie {
 
+Json::Json(Kind what, double value) : kind(what), number(value) {}
+Json::Json(std::string value) : kind(Kind::string), text(std::move(value)) {}
+Json::~Json() = default;
+Json::Json(Json&& other) noexcept = default;
+Json& Json::operator=(Json&& other) noexcept = default;
+
 const Json* Json::find(std::string_view key) const {
   const auto at = std::lower_bound(members.begin(), members.end(), key,
                                    [](const Member& member, std::string_view k) { return member.key < k; });

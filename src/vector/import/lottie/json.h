@@ -13,8 +13,11 @@ public:
   struct Member;
   enum class Kind : uint8_t { null, boolean, number, string, array, object };
 
-  explicit Json(Kind what = Kind::null, double value = 0) : kind(what), number(value) {}
-  explicit Json(std::string value) : kind(Kind::string), text(std::move(value)) {}
+  explicit Json(Kind what = Kind::null, double value = 0);
+  explicit Json(std::string value);
+  ~Json(); // where Member is known, as all that makes or ends one
+  Json(Json&& other) noexcept;
+  Json& operator=(Json&& other) noexcept;
   static Json array() { return Json(Kind::array); }
   static Json object() { return Json(Kind::object); }
 
@@ -35,8 +38,8 @@ public:
   Kind kind = Kind::null;
   double number = 0; ///< 0 or 1 of a boolean
   std::string text;
-  std::vector<Json> items;       ///< of an array
-  std::vector<Member> members{}; ///< of an object, by key
+  std::vector<Json> items;     ///< of an array
+  std::vector<Member> members; ///< of an object, by key
 };
 
 struct Json::Member {
