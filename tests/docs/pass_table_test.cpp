@@ -121,9 +121,9 @@ std::string interpreters(const ShaderFiles& files) {
 std::string page() {
   const ShaderFiles files;
   return "# Passes\n\n"
-         "Each recorder has a list of passes. From it come barriers, scratch, labels and timestamps.\n"
-         "`pass_table_test --write` makes these tables; the test compares them. Files lie\n"
-         "below `shaders/`. Forms of a pass, of which a recording runs one, share a row, and so do passes of one\n"
+         "Each recorder has a list of passes. From it come barriers, scratch, labels, timestamps.\n"
+         "`pass_table_test --write` makes these tables and tests them. Files lie below\n"
+         "`shaders/`. Forms of a pass, of which a recording runs one, share a row, as do passes of one\n"
          "file with the same resources. What they do is in [spawn](spawn.md), [vector](vector.md),\n"
          "[visibility](visibility.md) and [atlas](atlas.md).\n\n"
          "## Spawn\n\nOf ordered instances, with colliders:\n\n" +
