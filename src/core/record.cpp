@@ -434,6 +434,9 @@ Result<void> Recorder::record(const Record& record) {
           const auto& groups = record.groups[pass.groups];
           for (uint32_t page = 0; pass.paged && page < pages; ++page) {
             const uint32_t constants[] = {page, record.pageConstants[page]};
+            // Each writes what is its own, but nobody sees that pages lie apart.
+            const uint32_t dispatches = 1u << static_cast<uint32_t>(pass.kind);
+            if (page) passBarrier(vk, cmd, dispatches, dispatches);
             bindPage(page);
             vk.CmdPushConstants(cmd, layout_, stages, 0, sizeof constants, constants);
             vk.CmdDispatch(cmd, groups[0], groups[1], groups[2]);

@@ -65,6 +65,7 @@ public:
     info_.maxPaths = 131072;
     info_.maxTileEntries = options.maxTileEntries;
     info_.targets = GPGP_CANVAS_TARGET_RGBA8;
+    info_.maxImages = static_cast<uint32_t>(images.pictures().size());
     info_.maxLayerPixels = firstLayerPixels(session.device(), size);
     canvas_ = session.take(Canvas::create(session.context(), info_), "gpgpCreateCanvas");
     session.check(canvas_.prewarm(), "gpgpPrewarm");

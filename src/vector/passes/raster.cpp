@@ -21,8 +21,10 @@ void addRaster(PassBuilder& b) {
     core::Pass& pass = b.listedTiles(name, spirv, condition, shader::kRichArguments);
     pass.uses[pass.useCount++] = {b.aside, write};
     pass.condition = condition;
+    return &pass;
   };
-  asideOf("aside, several drawings", vector_aside_rich, kAside);
+  core::Pass& barrier = *asideOf("aside, several drawings", vector_aside_rich, kAside);
+  if (b.sizes.imagePages > 1) barrier.uses[barrier.useCount++] = {b.imageColors, read}; // as passes beside it do
   const size_t first = b.list.passes.size(); // the pass before has the barrier of all up to the last raster pass
   asideOf("aside", vector_aside_rich_one, kAsideOne);
   asideOf("aside, images", vector_aside_rich_images, kAsideImages);

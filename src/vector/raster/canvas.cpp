@@ -319,7 +319,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   r.groups[kOnce] = {1, 1, 1};
   r.groups[kPatches] = rows(divide(patches.patches, std::max(patches.groupPatches, 1u)));
   r.groups[kPatchBlocks] = {512, 1, 1};
-  r.groups[kImageTiles] = {64, 64, 1};
+  r.groups[kImageTiles] = {16, 64, 1};
   r.groups[kClear] = {64, 1, 1};
   r.groups[kFill] = {std::min(std::max(header.segmentCount / 160, divide(height, 64)), 4096u), 1, 1};
   r.groups[kSmallGlyphs] = rows(std::max(header.itemCount, 1u));
