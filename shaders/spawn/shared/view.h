@@ -54,8 +54,9 @@ GPGP_FN Seen seenBy(View view, Shape s, vec4 rowX, vec4 rowY, vec4 rowZ) {
   const vec3 place = nearbyLengths(s.position);
   const vec3 size = nearbyLengths(s.size);
   // Seen from the camera, which keeps its digits far from the origin.
-  const vec3 origin = nearbyLengths(vec3(subtract(settle(rowX.w), view.camera.x), subtract(settle(rowY.w), view.camera.y),
-                                         subtract(settle(rowZ.w), view.camera.z)));
+  const vec3 origin =
+      nearbyLengths(vec3(subtract(settle(rowX.w), view.camera.x), subtract(settle(rowY.w), view.camera.y),
+                         subtract(settle(rowZ.w), view.camera.z)));
   const vec3 within = vec3(sumOfProducts(x, place), sumOfProducts(y, place), sumOfProducts(z, place));
   GPGP_PRECISE vec3 sum = origin + within;
   const vec3 centre = nearbyLengths(sum);
