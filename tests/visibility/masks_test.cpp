@@ -35,7 +35,7 @@ struct MasksTest : VisibilityGpuTest {
         const GpuResult result = sample(scene, options);
         expectEqual(result, onCpu(scene, method), what + ", method " + std::to_string(method));
         if (method == GPGP_SAMPLING_EXACT) {
-          EXPECT_EQ(compareWithRays(scene, result.bits, 8, 2), "") << what;
+          EXPECT_EQ(compareWithRays(scene, result.bits, 4, 1), "") << what;
         }
       }
   }
