@@ -273,7 +273,8 @@ Result<void> ListLayers::drawing(uint32_t index, const Picture& onto, float opac
   const DrawingAsset& asset = *layeredDrawing(command);
   if (command.space.group)
     return makeError(GPGP_ERROR_UNSUPPORTED,
-                     ": its drawing has layers, which groups do not show; push a layer in the group's place");
+                     ", entry %u: its drawing has layers, which groups do not show; push a layer in the group's place",
+                     command.firstEntry);
   const auto slot = bind_(asset);
   if (!slot) return slot.error();
   if (*slot == UINT32_MAX) planner_.close();
@@ -281,7 +282,8 @@ Result<void> ListLayers::drawing(uint32_t index, const Picture& onto, float opac
   const LayerPlan& plan = asset.plan();
   for (const LayerNode& node : plan.nodes)
     if (map.projective() && (node.filtered || node.mask))
-      return makeError(GPGP_ERROR_UNSUPPORTED, ": a drawing with filters or masks is not drawn in perspective");
+      return makeError(GPGP_ERROR_UNSUPPORTED,
+                       ", entry %u: a drawing with filters or masks is not drawn in perspective", command.firstEntry);
   const LayerPlanner::Around around{&asset, plan, asset.layerBounds(), map, *slot};
   const Finish finish{index, cutOf(command.space.clip), depth_ == 0, nullptr, {}};
   const PixelBox shown = meet(meet(onto.box, finish.cut.box), planner_.pixels(map, asset.layerBounds().sequences[0]));
