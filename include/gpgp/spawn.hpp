@@ -261,11 +261,11 @@ public:
   Operator setAttribute(const Value& value, const Successor& to) noexcept {
     return add(GPGP_OPERATOR_SET_ATTRIBUTE, {value.get()}, {to});
   }
-  Operator roof(const Value& form, const Value& measure, const Value& value, const Successor& to) noexcept {
-    return add(GPGP_OPERATOR_ROOF, {form.get(), measure.get(), value.get()}, {to});
+  Operator raiseRoof(const Value& form, const Value& measure, const Value& value, const Successor& to) noexcept {
+    return add(GPGP_OPERATOR_RAISE_ROOF, {form.get(), measure.get(), value.get()}, {to});
   }
-  Operator roofFace(const Value& face, const Value& overhang, const Value& atGables, const Successor& to) noexcept {
-    return add(GPGP_OPERATOR_ROOF_FACE, {face.get(), overhang.get(), atGables.get()}, {to});
+  Operator toRoofFace(const Value& face, const Value& overhang, const Value& atGables, const Successor& to) noexcept {
+    return add(GPGP_OPERATOR_TO_ROOF_FACE, {face.get(), overhang.get(), atGables.get()}, {to});
   }
   Operator compSplit(const Successor& faces) noexcept { return add(GPGP_OPERATOR_COMP_SPLIT, {}, {faces}); }
   Operator compSplit(const Successor& top, const Successor& bottom, const Successor& sides) noexcept {

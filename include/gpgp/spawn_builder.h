@@ -141,10 +141,10 @@ enum {
   /** Values: form, measure, value. One successor. Forms: 0 a gable with its ridge along x, 1 along z, 2 a hip roof, 3 a
    *  pyramid, 4 to 7 a shed roof that is low at the side with the highest z, the highest x, the lowest z, the lowest x.
    *  Measures: 0 the height, 1 the slope as rise by run, 2 the angle in degrees. */
-  GPGP_OPERATOR_ROOF = 25,
+  GPGP_OPERATOR_RAISE_ROOF = 25,
   /** Values: face, overhang, overhang at gables. One successor. Faces: 0 to 3 the sides in the order of shed roofs, 4
    * the bottom. */
-  GPGP_OPERATOR_ROOF_FACE = 26
+  GPGP_OPERATOR_TO_ROOF_FACE = 26
 };
 
 typedef uint32_t GpgpGrammarOperator; /**< An operator of a builder. 0: none. */

@@ -97,7 +97,8 @@ TEST(CgaGraphs, TheFirstMisfitIsNamedWithItsPlace) {
   EXPECT_EQ(why("Lot --> extrude(scope.sx - 3)"), "main.cga:1:9 extrude by a height that may be 0 or less");
   EXPECT_EQ(why("Lot --> split(x) { ~1: case split.index == 0: A else: B }*"),
             "main.cga:1:29 the function or attribute 'split.index'");
-  EXPECT_EQ(why("Lot --> setback(1) { all: A | remainder: B }"), "main.cga:1:22 a setback whose mitred pieces are used");
+  EXPECT_EQ(why("Lot --> setback(1) { all: A | remainder: B }"),
+            "main.cga:1:22 a setback whose mitred pieces are used");
   EXPECT_EQ(why("Lot --> A(1)\nA(n) --> t(1, 0, 0) A(n + 1)"),
             "main.cga:2:21 a rule that is called with so many different values");
 }

@@ -245,14 +245,14 @@ TEST(Operators, ThoseOfCornersKeepThem) {
 
 TEST(Operators, RoofsAndTheirFaces) {
   // Ten by six, one to one: three high, with a ridge of four.
-  const auto hip = derived("A = Roof(2,1,1) T;", makeAxiom(10, 0, 6)).instances.at(0);
+  const auto hip = derived("A = RaiseRoof(2,1,1) T;", makeAxiom(10, 0, 6)).instances.at(0);
   EXPECT_EQ(hip.shape & 0xff, GPGP_SHAPE_ROOF);
   EXPECT_NEAR((hip.shape >> 8 & 0xfffff) / 1048576.0, 0.2, 1e-6);
   EXPECT_EQ(hip.shape >> 28, 0u);
   EXPECT_FLOAT_EQ(hip.size[1], 3);
   EXPECT_FLOAT_EQ(hip.transform[7], 1.5f);
   for (int face = 0; face < 5; ++face) {
-    const auto f = derived("A = Roof(2,1,1) RoofFace(" + std::to_string(face) + ",0,0) T;", makeAxiom(10, 0, 6))
+    const auto f = derived("A = RaiseRoof(2,1,1) ToRoofFace(" + std::to_string(face) + ",0,0) T;", makeAxiom(10, 0, 6))
                        .instances.at(0);
     EXPECT_EQ(f.shape & 0xff, face == 4 ? GPGP_SHAPE_QUAD : GPGP_SHAPE_TRAPEZOID);
     EXPECT_FLOAT_EQ(f.size[0], face % 2 ? 6 : 10);
@@ -269,19 +269,20 @@ TEST(Operators, RoofsAndTheirFaces) {
     EXPECT_NEAR(f.transform[10], out[face][1] * std::sqrt(0.5f), 1e-5);
   }
   // A quad stands up; degrees; overhangs lengthen slopes, and gables' ridges at both ends.
-  const auto slope = derived("A = ToFace(0) Roof(0,2,45) RoofFace(0,1,0.5) T;", makeAxiom(10, 2, 6)).instances.at(0);
+  const auto slope =
+      derived("A = ToFace(0) RaiseRoof(0,2,45) ToRoofFace(0,1,0.5) T;", makeAxiom(10, 2, 6)).instances.at(0);
   EXPECT_EQ(slope.shape, GPGP_SHAPE_QUAD);
   EXPECT_NEAR(slope.size[0], 11, 1e-5);
   EXPECT_NEAR(slope.size[1], 3 * std::sqrt(2.0f) + 1, 1e-5);
   EXPECT_NEAR(slope.transform[7], 1 + 1.5f - 0.5f * std::sqrt(0.5f), 1e-5);
-  const auto wall = derived("A = Roof(0,0,3) RoofFace(1,1,0.5) T;", makeAxiom(10, 0, 6)).instances.at(0);
+  const auto wall = derived("A = RaiseRoof(0,0,3) ToRoofFace(1,1,0.5) T;", makeAxiom(10, 0, 6)).instances.at(0);
   EXPECT_EQ(wall.shape, GPGP_SHAPE_TRAPEZOID);
   EXPECT_FLOAT_EQ(wall.size[0], 6);
   EXPECT_FLOAT_EQ(wall.size[1], 3);
   EXPECT_FLOAT_EQ(wall.transform[3], 5);
   // What is no rectangle, or no roof, stays as it is; nothing cuts a roof.
-  EXPECT_EQ(derived("A = RoofFace(1,0,0) T;", makeAxiom(1, 1, 1)).instances.at(0).shape, GPGP_SHAPE_BOX);
-  const auto cut = derived("A = Roof(3,0,1) SubDiv(X) { -1: T | -1: T };", makeAxiom(1, 0, 1));
+  EXPECT_EQ(derived("A = ToRoofFace(1,0,0) T;", makeAxiom(1, 1, 1)).instances.at(0).shape, GPGP_SHAPE_BOX);
+  const auto cut = derived("A = RaiseRoof(3,0,1) SubDiv(X) { -1: T | -1: T };", makeAxiom(1, 0, 1));
   EXPECT_TRUE(cut.instances.empty());
   EXPECT_EQ(cut.droppedShapes, 1u);
 }

@@ -148,10 +148,11 @@ private:
     case 3:
       return std::string("SetAttribute(Noise(ShapeCustomAttribute(),") + value(0, 2) + ")) " + successor(depth - 1);
     case 4:
-      return "Roof(" + std::to_string(below(8)) + "," + std::to_string(below(3)) + "," + value(0, 3) + ") " +
-             (below(2) ? successor(depth - 1)
-                       : "Replicate() { RoofFace(" + std::to_string(below(5)) + ",0.2,0.1) " + successor(depth - 1) +
-                             " | RoofFace(" + value(0, 3) + ",0," + number(0, 1) + ") " + successor(depth - 1) + " }");
+      return "RaiseRoof(" + std::to_string(below(8)) + "," + std::to_string(below(3)) + "," + value(0, 3) + ") " +
+             (below(2)
+                  ? successor(depth - 1)
+                  : "Replicate() { ToRoofFace(" + std::to_string(below(5)) + ",0.2,0.1) " + successor(depth - 1) +
+                        " | ToRoofFace(" + value(0, 3) + ",0," + number(0, 1) + ") " + successor(depth - 1) + " }");
     default: return std::string("ToFace(") + number(0, 6) + ") " + successor(depth - 1);
     }
   }

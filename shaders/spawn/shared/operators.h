@@ -307,16 +307,16 @@ GPGP_FN uint selectBit(uint bits, uint n) {
 }
 
 // Bits of GPGP_OPERATORS beside those of kOp values: cases of operators that cost much code.
-GPGP_CONST uint kHasRoofs = 1u << 28;     // Roof, RoofFace
+GPGP_CONST uint kHasRoofs = 1u << 28;     // RaiseRoof, ToRoofFace
 GPGP_CONST uint kHasCuts = 1u << 29;      // SubDiv of others than boxes, quads and spheres
 GPGP_CONST uint kHasDivisions = 1u << 30; // SubDiv whose parts are not constant
 GPGP_CONST uint kHasSides = 1u << 31;     // CompSplit of others than boxes
 
-GPGP_FN void roof(GPGP_INOUT(Shape) s, vec3 v) {
-  if ((GPGP_OPERATORS & kHasRoofs) != 0u) raiseRoof(s, v);
+GPGP_FN void raiseRoof(GPGP_INOUT(Shape) s, vec3 v) {
+  if ((GPGP_OPERATORS & kHasRoofs) != 0u) makeRoof(s, v);
 }
-GPGP_FN void roofFace(GPGP_INOUT(Shape) s, vec3 v) {
-  if ((GPGP_OPERATORS & kHasRoofs) != 0u) toRoofFace(s, v);
+GPGP_FN void toRoofFace(GPGP_INOUT(Shape) s, vec3 v) {
+  if ((GPGP_OPERATORS & kHasRoofs) != 0u) makeRoofFace(s, v);
 }
 /// As GpgpInstance::shape: roofs and trapezoids with the bits that say their form.
 GPGP_FN uint instanceShape(Shape s) {

@@ -24,7 +24,7 @@ GPGP_FN float slopeOfDegrees(float degrees) {
 }
 
 /// A quad, Y along its normal then, or the foot of a box becomes a roof. v: form, how steep it is said, the value.
-GPGP_FN void raiseRoof(GPGP_INOUT(Shape) s, vec3 v) {
+GPGP_FN void makeRoof(GPGP_INOUT(Shape) s, vec3 v) {
   if (shapeType(s) == kShapeQuad) {
     const vec3 axisZ = opposite(s.axisY);
     s.axisY = s.axisZ;
@@ -61,7 +61,7 @@ GPGP_FN void raiseRoof(GPGP_INOUT(Shape) s, vec3 v) {
 /// A roof becomes one of its faces: a side, or 4, which is the bottom. X runs along the side and Z out of it. Where it
 /// slopes it reaches further by v.y along the slope; v.z is how much further it reaches at both ends of a gable's
 /// ridge. v.x: the face.
-GPGP_FN void toRoofFace(GPGP_INOUT(Shape) s, vec3 v) {
+GPGP_FN void makeRoofFace(GPGP_INOUT(Shape) s, vec3 v) {
   if (shapeType(s) != kShapeRoof) return;
   const uint side = uint(clamp(floor(v.x), 0.0f, 4.0f));
   if (side == 4u) {

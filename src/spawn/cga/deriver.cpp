@@ -440,8 +440,8 @@ LeafScope Deriver::scopeOf(const Shape& shape) const {
   // Polygons in the ground plane are seen from above.
   const bool isFlat = isBox ? shape.form.mesh == boxes_.flat : shape.form.mesh != 0 && shape.form.scope.size.y == 0;
   // What else lies in a plane, a roof's face for one, faces z as well.
-  const bool isQuad = isFlat || (isBox ? shape.form.mesh == boxes_.upright
-                                       : shape.form.mesh != 0 && shape.form.scope.size.z == 0);
+  const bool isQuad =
+      isFlat || (isBox ? shape.form.mesh == boxes_.upright : shape.form.mesh != 0 && shape.form.scope.size.z == 0);
   Form flat = shape.form;
   flat.mesh = boxes_.flat;
   const Scope s = isFlat ? boxes_.face(flat, 0).scope : shape.form.scope;

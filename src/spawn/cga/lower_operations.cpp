@@ -510,7 +510,7 @@ Lowering::Text Lowering::components(const Statement& s, const Scope& scope, cons
     misfit("comp of a roof's face that is no rectangle, or was extruded,", s.place);
   const bool isBox = state.form == Form::box;
   constexpr uint32_t kFaces[6] = {1, 3, 5, 2, 4, 0}; // by CGA's index
-  const bool isMesh = isBox && state.isMesh; // children by parts then, as the CPU counts them
+  const bool isMesh = isBox && state.isMesh;         // children by parts then, as the CPU counts them
   if (isMesh && state.axes[1] != 2) misfit("comp of a shape that may not be upright", s.place);
   if (isMesh) result_.needsUpright = true;
   std::vector<Text> ways(6, nothing());

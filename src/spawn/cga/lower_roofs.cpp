@@ -130,7 +130,7 @@ Lowering::Text Lowering::roof(const Statement& s, Operation operation, const Sco
   for (const uint32_t form : forms) {
     roof.form = form;
     state.roof = roof;
-    ways.push_back(wrapped("Roof(" + std::to_string(form) + "," + measure + "," + steepness + ")", goOn(state)));
+    ways.push_back(wrapped("RaiseRoof(" + std::to_string(form) + "," + measure + "," + steepness + ")", goOn(state)));
   }
   if (ways.size() == 1) return std::move(ways[0]);
   // Nearly square ones as square ones, whose front has a gable.
@@ -217,7 +217,7 @@ Lowering::Text Lowering::roofFaces(const Statement& s, const Scope& scope, const
     for (uint32_t i = 0; i < faces.size(); ++i) {
       if (owner[i] != &part) continue;
       Scope inner = scope;
-      ways.push_back(wrapped("RoofFace(" + std::to_string(faces[i]) + "," + cga::text(roof.overhang) + "," +
+      ways.push_back(wrapped("ToRoofFace(" + std::to_string(faces[i]) + "," + cga::text(roof.overhang) + "," +
                                  cga::text(roof.overhangAtGables) + ")",
                              limited(bodyOf(part.body, inner, roofFaceOf(state, faces[i])))));
     }
@@ -254,8 +254,9 @@ Lowering::Text Lowering::setback(const Statement& s, const Scope& scope, const S
     }
     isAny = true;
     for (uint32_t e = 0; e < 4; ++e) {
-      const bool isHere = name == "border" ? true : name == "inside" ? false
-                                                                     : selects(part, scope, edges, faces[e], e, 4);
+      const bool isHere = name == "border"   ? true
+                          : name == "inside" ? false
+                                             : selects(part, scope, edges, faces[e], e, 4);
       if (!owner[e] && isHere) owner[e] = &part;
     }
   }
@@ -269,7 +270,8 @@ Lowering::Text Lowering::setback(const Statement& s, const Scope& scope, const S
   // The edge at the low end of each axis.
   const uint32_t low[2] = {3, state.form == Form::flat ? 2u : 0u};
   const FormulaPtr both[2] = {sum(inset(1), inset(3)), sum(inset(0), inset(2))};
-  const auto part = [&](const std::array<FormulaPtr, 3>& move, const std::array<FormulaPtr, 3>& size, const Body& body) {
+  const auto part = [&](const std::array<FormulaPtr, 3>& move, const std::array<FormulaPtr, 3>& size,
+                        const Body& body) {
     State child = state;
     child.made = false;
     child.isMesh = true;
@@ -279,7 +281,8 @@ Lowering::Text Lowering::setback(const Statement& s, const Scope& scope, const S
     const auto values = [](const char* name, const std::array<FormulaPtr, 3>& v) {
       return std::string(name) + "(" + cga::text(v[0]) + "," + cga::text(v[1]) + "," + cga::text(v[2]) + ")";
     };
-    return wrapped(values("Translate", move), wrapped(values("ResizeCorner", size), limited(bodyOf(body, inner, child))));
+    return wrapped(values("Translate", move),
+                   wrapped(values("ResizeCorner", size), limited(bodyOf(body, inner, child))));
   };
   const auto children = [&](bool remains) {
     std::vector<Text> ways;
@@ -302,8 +305,8 @@ Lowering::Text Lowering::setback(const Statement& s, const Scope& scope, const S
           continue;
         }
         const uint32_t axis = along(e), i = axis ? 1 : 0;
-        const FormulaPtr room = moves((e + 2) % 4) ? fits(combined(kCodeMultiply, sizeOf(axis), number(0.5f)), s.place)
-                                                   : sizeOf(axis);
+        const FormulaPtr room =
+            moves((e + 2) % 4) ? fits(combined(kCodeMultiply, sizeOf(axis), number(0.5f)), s.place) : sizeOf(axis);
         size[axis] = remains ? distance : room;
         if (e != low[i]) move[axis] = less(sizeOf(axis), size[axis]);
         ways.push_back(part(move, size, p.body));

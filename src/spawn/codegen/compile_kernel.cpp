@@ -58,7 +58,6 @@ std::string kernelText(const std::string& functions, KernelTarget target) {
               : "") +
          (target == KernelTarget::software ? "#define GPGP_SOFTWARE\n" : "") +
          "#include \"spawn/shared/bindings.glsl\"\n"
-         "#include \"spawn/shared/operators.h\"\n"
          "#include \"spawn/kernel/table_format.h\"\n" +
          functions + "#include \"spawn/derive/derive.glsl\"\n";
 }

@@ -50,10 +50,9 @@ public:
   KernelSource run() {
     if (graph_.phases) add("#define GPGP_COLLIDERS\n");
     room_ = findRoom(graph_, waits_, first_, entered(), table_.chooses);
-    writeParameters();
     uint32_t operators = 0;
     for (const Node& node : graph_.nodes) {
-      if (node.op == kOpRoof || node.op == kOpRoofFace) operators |= kHasRoofs;
+      if (node.op == kOpRaiseRoof || node.op == kOpToRoofFace) operators |= kHasRoofs;
       if (table_.family[indexOf(node)]) continue;
       const bool byWords = couldMultiply(node.op) &&
                            (room_.words || node.division == UINT32_MAX || isByWords(node) || stops_[indexOf(node)]);
@@ -63,7 +62,9 @@ public:
       if (node.op == kOpSubDiv && node.division == UINT32_MAX) operators |= kHasDivisions;
       if (node.op == kOpCompSplit && node.shapes != 1u << kShapeBox) operators |= kHasSides;
     }
-    add("#define GPGP_OPERATORS " + number(operators) + "\n#include \"spawn/shared/fans.h\"\n");
+    add("#define GPGP_OPERATORS " + number(operators) + "\n#include \"spawn/shared/operators.h\"\n");
+    writeParameters();
+    add("#include \"spawn/shared/fans.h\"\n");
     if (room_.words) add("#include \"spawn/shared/chain.h\"\n");
     writeTable();
     std::vector<uint8_t> written(graph_.nodes.size());
@@ -407,10 +408,10 @@ private:
   /// What the table says of an operator that passes on one shape.
   std::string callOf(const Node& node) {
     // An angle that is known is a slope: as rotation() says.
-    const bool isAngle = node.op == kOpRoof && isConstant(node, 1) && isConstant(node, 2) &&
+    const bool isAngle = node.op == kOpRaiseRoof && isConstant(node, 1) && isConstant(node, 2) &&
                          std::floor(constant(node, 1)) >= static_cast<float>(kRoofByAngle);
     if (isAngle)
-      return "roof(s, vec3(" + parameter(node, 0) + ", " + literal(static_cast<float>(kRoofBySlope)) + ", " +
+      return "raiseRoof(s, vec3(" + parameter(node, 0) + ", " + literal(static_cast<float>(kRoofBySlope)) + ", " +
              literal(slopeOfDegrees(constant(node, 2))) + "))";
     return replaced(kOperators[node.op].call, [&](std::string_view word) {
       return word == "GPGP_VALUES"      ? vector(node)

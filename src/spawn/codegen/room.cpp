@@ -25,7 +25,7 @@ uint32_t codesOf(const Graph& graph, const Node& node) {
 uint32_t codeOf(const Node& node) {
   if (node.op == kOpCompSplit) return node.shapes == 1u << kShapeBox ? 8 : 24;
   if (node.op == kOpSubDiv) return node.division == UINT32_MAX ? 16 : 5;
-  if (node.op == kOpRoof || node.op == kOpRoofFace) return 4;
+  if (node.op == kOpRaiseRoof || node.op == kOpToRoofFace) return 4;
   return 1;
 }
 

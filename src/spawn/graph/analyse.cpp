@@ -158,8 +158,8 @@ uint32_t outputOf(const Node& node, uint32_t edge, uint32_t shape) {
   case kOpSetGeometry: return bit(node.argument);
   case kOpGrowAlong: return bit(kShapeBox);
   case kOpToFace: return bit(kShapeQuad);
-  case kOpRoof: return bit(kRectangleShapes & bit(shape) ? kShapeRoof : shape);
-  case kOpRoofFace: return shape == kShapeRoof ? bit(kShapeQuad) | bit(kShapeTrapezoid) : bit(shape);
+  case kOpRaiseRoof: return bit(kRectangleShapes & bit(shape) ? kShapeRoof : shape);
+  case kOpToRoofFace: return shape == kShapeRoof ? bit(kShapeQuad) | bit(kShapeTrapezoid) : bit(shape);
   case kOpCompSplit:
     if (edge == 2) return isPrism(shape) ? bit(kShapeQuad) : 0u;
     if (isPrism(shape)) return bit(polygonOf(shape));

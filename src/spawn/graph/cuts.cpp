@@ -135,9 +135,9 @@ private:
         to = node.argument | node.argument2 << 8;
       } else if (node.op == kOpGrowAlong || node.op == kOpToFace) {
         to = (node.op == kOpGrowAlong ? kShapeBox : kShapeQuad) | kQuadPolygon << 8;
-      } else if (node.op == kOpRoof && (kRectangleShapes >> shape & 1)) {
+      } else if (node.op == kOpRaiseRoof && (kRectangleShapes >> shape & 1)) {
         to = kShapeRoof;
-      } else if (node.op == kOpRoofFace && shape == kShapeRoof) {
+      } else if (node.op == kOpToRoofFace && shape == kShapeRoof) {
         arrive(target, kShapeTrapezoid);
         to = kShapeQuad | kQuadPolygon << 8;
       } else if (node.op == kOpExtrude && isPolygon(shape)) {
