@@ -1,6 +1,7 @@
 // The `gpgp` command: what the library does, from the command line. One file per subcommand.
 #include "cli/shared/command.h"
 #include "cli/shared/messages.h"
+#include "core/suggest.h"
 
 #include <gpgp/core.h>
 
@@ -30,6 +31,21 @@ struct Subcommand {
   CommonOptions options;
   Work work;
 };
+
+/// Names the first argument that looks like an option and is none of the command's. Empty where there is none.
+std::string unknownOption(const CLI::App& command, int argc, char** argv) {
+  for (int i = 2; i < argc && std::string_view(argv[i]) != "--"; ++i) {
+    const std::string_view argument = argv[i];
+    if (!argument.starts_with("--")) continue;
+    const std::string name(argument.substr(0, argument.find('=')));
+    if (command.get_option_no_throw(name)) continue;
+    gpgp::core::Suggestion suggestion(name);
+    for (const CLI::Option* option : command.get_options())
+      for (const std::string& known : option->get_lnames()) suggestion.offer("--" + known);
+    return "there is no option '" + name + "'" + suggestion.text();
+  }
+  return {};
+}
 
 int run(int argc, char** argv) {
   CLI::App app("gpgp: grammars, vector graphics and triangle visibility on the GPU", "gpgp");
@@ -71,19 +87,24 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& request) { // --help, --version
     return app.exit(request);
   } catch (const CLI::ParseError& error) {
-    std::string all, help = "gpgp";
+    const std::string first = argc > 1 ? argv[1] : "";
+    std::string all, help = "gpgp", option;
     bool known = false;
+    gpgp::core::Suggestion command(first);
     for (const Subcommand& subcommand : subcommands) {
       const std::string name = subcommand.app->get_name();
       all += (all.empty() ? "" : ", ") + name;
-      known = known || subcommand.app->parsed();
-      if (subcommand.app->parsed()) help = "gpgp " + name;
+      command.offer(name);
+      if (name != first && !subcommand.app->parsed()) continue;
+      known = true;
+      help = "gpgp " + name;
+      option = unknownOption(*subcommand.app, argc, argv);
     }
-    const std::string first = argc > 1 ? argv[1] : "";
     if (!known && !first.empty() && first[0] != '-')
-      std::fprintf(stderr, "there is no command \"%s\"; there are %s\n", printable(first).c_str(), all.c_str());
+      std::fprintf(stderr, "there is no command \"%s\"; there are %s%s\n", printable(first).c_str(), all.c_str(),
+                   command.text().c_str());
     else
-      std::fprintf(stderr, "%s\n", printable(error.what()).c_str());
+      std::fprintf(stderr, "%s\n", printable(option.empty() ? error.what() : option).c_str());
     std::fprintf(stderr, "Run `%s --help` for more information.\n", help.c_str());
     return 2;
   }

@@ -51,10 +51,16 @@ TEST(Cli, WrongNamesAreAnsweredWithTheRightOnes) {
   const ProcessResult misspelt = gpgp({"spwan", "x.pga"});
   EXPECT_EQ(misspelt.exitCode, 2);
   EXPECT_NE(misspelt.err.find("there is no command \"spwan\"; there are info, "), std::string::npos) << misspelt.err;
+  EXPECT_NE(misspelt.err.find("; did you mean 'spawn'?"), std::string::npos) << misspelt.err;
   EXPECT_NE(misspelt.err.find("Run `gpgp --help`"), std::string::npos) << misspelt.err;
+  for (const char* argument : {"--jsno", "--jsno=3"}) {
+    const ProcessResult close = gpgp({"info", argument, "no such file"});
+    EXPECT_EQ(close.exitCode, 2);
+    EXPECT_NE(close.err.find("there is no option '--jsno'; did you mean '--json'?"), std::string::npos) << close.err;
+  }
   const ProcessResult option = gpgp({"info", "--ouput"});
   EXPECT_EQ(option.exitCode, 2);
-  EXPECT_NE(option.err.find("--ouput"), std::string::npos) << option.err;
+  EXPECT_NE(option.err.find("there is no option '--ouput'\n"), std::string::npos) << option.err;
   EXPECT_NE(option.err.find("Run `gpgp info --help`"), std::string::npos) << option.err;
 }
 

@@ -4,7 +4,7 @@
 #include "cli/shared/messages.h"
 #include "host/files.h"
 #include "spawn/cga/program_format.h"
-#include "spawn/language/suggest.h"
+#include "core/suggest.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -68,7 +68,7 @@ void checkAttributes(const std::vector<AttributeValue>& values, const Program& p
       continue;
     }
     if (found != program.attributes.end()) throw Usage("--attr " + value.name + ": it is a const, which cannot be set");
-    spawn::Suggestion suggestion(value.name);
+    core::Suggestion suggestion(value.name);
     for (const AttributeInfo& a : program.attributes)
       if (!a.isConstant && !a.isMaterial) suggestion.offer(a.name);
     throw Usage("--attr " + value.name + ": there is no such attribute" + suggestion.text());

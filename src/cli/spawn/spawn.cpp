@@ -12,7 +12,7 @@
 #include "cli/spawn/unit_shapes.h"
 #include "cli/tune/tuner.h"
 #include "host/files.h"
-#include "spawn/language/suggest.h"
+#include "core/suggest.h"
 #include "spawn/schedule/camera.h"
 
 #include <gpgp/spawn.h>
@@ -372,7 +372,7 @@ Outcome spawnLsystem(const SpawnOptions& options, const CommonOptions& common) {
 /// The rule or axiom that --start names.
 uint32_t startNamed(const BakedGraph& grammar, const std::string& name) {
   const std::vector<NamedStart> starts = grammar.namedStarts();
-  spawn::Suggestion suggestion(name);
+  core::Suggestion suggestion(name);
   for (uint32_t i = 0; i < starts.size(); ++i) {
     if (starts[i].name == name) return i;
     suggestion.offer(starts[i].name);

@@ -3,7 +3,7 @@
 
 #include "spawn/cga/compiler.h"
 #include "spawn/cga/lower.h"
-#include "spawn/language/suggest.h"
+#include "core/suggest.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -232,7 +232,7 @@ Entity* Compiler::startRule(Module& main) {
     name.erase(0, dot + 1);
   }
   if (Entity* found = module->find(name, true, 0)) return found;
-  Suggestion suggestion(options_.start);
+  core::Suggestion suggestion(options_.start);
   for (const auto& [other, entity] : main.entities)
     if (entity.kind == Definition::Kind::rule && entity.definition->parameters.empty()) suggestion.offer(other);
   messages_.error(main.file->path, {},

@@ -1,6 +1,6 @@
 // Expressions to code that leaves one value on the machine's stack.
 #include "spawn/cga/compiler.h"
-#include "spawn/language/suggest.h"
+#include "core/suggest.h"
 
 #include <algorithm>
 
@@ -295,7 +295,7 @@ void Compiler::unknownName(const Expression& e, const Context& context) {
                           ", not " + std::to_string(e.arguments.size()));
       return;
     }
-  Suggestion suggestion(e.text);
+  core::Suggestion suggestion(e.text);
   for (const std::string& local : context.locals) suggestion.offer(local);
   for (const auto& [other, entity] : context.scope->entities)
     if (entity.kind != Definition::Kind::rule) suggestion.offer(other);

@@ -1,6 +1,6 @@
 // Bodies of rules to code that changes the current shape and makes new ones.
 #include "spawn/cga/compiler.h"
-#include "spawn/language/suggest.h"
+#include "core/suggest.h"
 
 #include <algorithm>
 #include <span>
@@ -224,7 +224,7 @@ void Compiler::unknownStatement(const Statement& s, const Context& context) {
                           ", not " + std::to_string(s.arguments.size()));
       return;
     }
-  Suggestion suggestion(s.name);
+  core::Suggestion suggestion(s.name);
   for (const auto& [name, entity] : context.scope->entities)
     if (entity.kind == Definition::Kind::rule) suggestion.offer(name);
   for (const std::string_view name : operationNames()) suggestion.offer(name);
@@ -279,7 +279,7 @@ void Compiler::set(const Statement& s, const Context& context) {
                    "'" + target.text + "' is not supported, and cannot be set");
     emit(kCgaPopCode);
   } else {
-    Suggestion suggestion(target.text);
+    core::Suggestion suggestion(target.text);
     for (const auto& [name, entity] : context.scope->entities)
       if (entity.kind == Definition::Kind::attribute) suggestion.offer(name);
     messages_.error(context.file(), target.place, "there is no attribute '" + target.text + "'" + suggestion.text());

@@ -1,6 +1,6 @@
 #include "spawn/cga/lower.h"
 
-#include "spawn/language/suggest.h"
+#include "core/suggest.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #include "spawn/cga/modules.h"
 
 #include "spawn/cga/parser.h"
-#include "spawn/language/suggest.h"
+#include "core/suggest.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -162,7 +162,7 @@ void Modules::define(Module& module, const std::string& style) {
     const auto found =
         std::find_if(file.styles.begin(), file.styles.end(), [&](const Style& s) { return s.name == at; });
     if (found == file.styles.end()) {
-      Suggestion suggestion(at);
+      core::Suggestion suggestion(at);
       for (const Style& s : file.styles) suggestion.offer(s.name);
       messages_.error(file.path, {}, "there is no style '" + at + "'" + suggestion.text());
       break;
@@ -198,7 +198,7 @@ void Modules::apply(Module& module, const Import& import) {
     const bool isRule = d.kind == Definition::Kind::rule;
     Entity* entity = module.find(d.name, isRule, d.parameters.size());
     if (!entity) {
-      Suggestion suggestion(d.name);
+      core::Suggestion suggestion(d.name);
       for (const auto& [name, other] : module.entities) suggestion.offer(name);
       messages_.warning(module.importer->file->path, d.place,
                         "\"" + import.path + "\" has no " + (isRule ? "rule" : "attribute") + " '" + d.name +

@@ -4,7 +4,7 @@
 #include "core/math.h"
 #include "spawn/language/corners.h"
 #include "spawn/language/lexer.h"
-#include "spawn/language/suggest.h"
+#include "core/suggest.h"
 
 #include <algorithm>
 #include <cstring>
@@ -429,7 +429,7 @@ PlacedGraph Machine::run() {
     const auto known = std::any_of(variables_.begin(), variables_.end(),
                                    [&](const auto& v) { return nameText(v.first) == variable.name; });
     if (known) continue;
-    Suggestion suggestion(variable.name);
+    core::Suggestion suggestion(variable.name);
     for (const auto& [name, set] : variables_) suggestion.offer(nameText(name));
     diagnostics_.error({},
                        std::string("there is no var '") + variable.name + "' that could be set" + suggestion.text());

@@ -2,7 +2,7 @@
 #include "spawn/gml/machine.h"
 
 #include "core/math.h"
-#include "spawn/language/suggest.h"
+#include "core/suggest.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +100,7 @@ void Machine::checkNames() {
       const std::string text = nameText(token.index).substr(0, 64);
       std::string suggestion;
       if (diagnostics_.takesErrors()) {
-        Suggestion best(text);
+        core::Suggestion best(text);
         for (const uint32_t literal : literals) best.offer(nameText(literal));
         forWords([&](std::string_view word) { best.offer(word); });
         suggestion = best.text();
@@ -338,7 +338,7 @@ void Machine::load(uint32_t name) {
     return;
   }
   if (!lost_) {
-    Suggestion suggestion(nameText(name));
+    core::Suggestion suggestion(nameText(name));
     for (size_t f = frames_.size(); f-- > 0;) {
       for (const auto& [other, value] : frames_[f].registers) suggestion.offer(nameText(other));
       if (frames_[f].isCall) break;

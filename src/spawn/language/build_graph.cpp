@@ -8,7 +8,7 @@
 #include "spawn/language/expressions.h"
 #include "spawn/language/resolve_rules.h"
 #include "spawn/language/spellings.h"
-#include "spawn/language/suggest.h"
+#include "core/suggest.h"
 #include "spawn/shared/expression.h"
 
 #include <algorithm>
@@ -77,7 +77,7 @@ private:
       const bool known = std::any_of(tree_.variables.begin(), tree_.variables.end(),
                                      [&](const VariableDefinition& v) { return v.name == variable.name; });
       if (!known) {
-        Suggestion suggestion(variable.name);
+        core::Suggestion suggestion(variable.name);
         for (const VariableDefinition& v : tree_.variables) suggestion.offer(v.name);
         diagnostics_.error({}, std::string("there is no var '") + variable.name + "' that could be set" +
                                    suggestion.text());
@@ -214,7 +214,7 @@ private:
   /// well.
   std::string suggestionFor(const std::string& name, bool ofShapes) const {
     if (!diagnostics_.takesErrors()) return {};
-    Suggestion suggestion(name);
+    core::Suggestion suggestion(name);
     if (ofShapes)
       for (const auto& [candidate, what] : names_) suggestion.offer(candidate);
     for (const Spelling& spelling : kSpellings) suggestion.offer(spelling.name);
@@ -482,7 +482,7 @@ private:
   void setShape(Axiom& axiom, const AxiomDefinition& definition) {
     const auto shape = shapeNamed(definition.shape);
     if (!shape) {
-      Suggestion suggestion(definition.shape);
+      core::Suggestion suggestion(definition.shape);
       for (uint32_t s = 0; s < kShapeCount; ++s) suggestion.offer(shapeName(s));
       diagnostics_.error(definition.shapePlace,
                          "there is no shape '" + definition.shape +

@@ -1,7 +1,7 @@
 #include "spawn/language/expressions.h"
 
 #include "spawn/language/spellings.h"
-#include "spawn/language/suggest.h"
+#include "core/suggest.h"
 #include "spawn/shared/expression.h"
 
 #include <algorithm>
@@ -134,7 +134,7 @@ ExpressionCompiler::Code ExpressionCompiler::call(const Expression& e) {
 /// What may be meant instead of a var's or function's name.
 std::string ExpressionCompiler::suggestionFor(const std::string& name, bool isCall) const {
   if (!diagnostics_.takesErrors()) return {};
-  Suggestion suggestion(name);
+  core::Suggestion suggestion(name);
   if (!isCall)
     for (const auto& [candidate, value] : variables_) suggestion.offer(candidate);
   forFunctionNames([&](const char* candidate) { suggestion.offer(candidate); });

@@ -1,7 +1,7 @@
 // Resolves the names of a file, and writes its table.
 #include "spawn/lsystem/compile.h"
 
-#include "spawn/language/suggest.h"
+#include "core/suggest.h"
 #include "spawn/lsystem/rewrite.h"
 #include "spawn/lsystem/syntax.h"
 #include "spawn/lsystem/table.h"
@@ -154,7 +154,7 @@ private:
     for (const Override& o : overrides_) {
       if (constants_.contains(std::string(o.name)) || std::count(std::begin(kSettings), std::end(kSettings), o.name))
         continue;
-      Suggestion suggestion(o.name);
+      core::Suggestion suggestion(o.name);
       for (const auto& [name, value] : constants_) suggestion.offer(name);
       for (const std::string_view name : kSettings) suggestion.offer(name);
       diagnostics_.error({},
@@ -307,7 +307,7 @@ private:
     if (e.kind == Expression::Kind::name) {
       const auto found = scope.names.find(e.name);
       if (found == scope.names.end()) {
-        Suggestion suggestion(e.name);
+        core::Suggestion suggestion(e.name);
         for (const auto& [name, meaning] : scope.names) suggestion.offer(name);
         for (const auto& [name, value] : constants_) suggestion.offer(name);
         diagnostics_.error(e.place, "there is no parameter or constant '" + e.name + "'" + suggestion.text());
@@ -356,7 +356,7 @@ private:
         const std::string name = m.name.substr(1);
         const System* called = systemNamed(name);
         if (!called) {
-          Suggestion suggestion(name);
+          core::Suggestion suggestion(name);
           for (const System& other : file_.systems) suggestion.offer(other.name);
           diagnostics_.error(m.place, "there is no sub-system '" + name + "'" + suggestion.text());
         } else if (called->parameters.size() != m.arguments.size()) {
@@ -502,7 +502,7 @@ private:
             if (other.made && other.name == symbol.name)
               text += "; one has it with " + std::string(parameters(other.arity));
           if (!made.contains(symbol.name)) {
-            Suggestion suggestion(symbol.name);
+            core::Suggestion suggestion(symbol.name);
             for (const std::string& other : made) suggestion.offer(other);
             text += suggestion.text();
           }

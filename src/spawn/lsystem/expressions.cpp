@@ -1,5 +1,5 @@
 // Expressions of .lsys files: precedence from ?: over || && == < + * to unary operators and ^.
-#include "spawn/language/suggest.h"
+#include "core/suggest.h"
 #include "spawn/lsystem/format.h"
 #include "spawn/lsystem/scanner.h"
 
@@ -175,7 +175,7 @@ Expression Reader::primary(uint32_t depth) {
                          std::to_string(arguments.size()));
     return e;
   }
-  Suggestion suggestion(e.name);
+  core::Suggestion suggestion(e.name);
   for (const Function& f : kFunctions) suggestion.offer(f.name);
   errorAt(e.place, "there is no function '" + e.name + "'" + suggestion.text());
   return e;

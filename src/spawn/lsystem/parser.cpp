@@ -1,5 +1,5 @@
 // Lines of a .lsys file to a File.
-#include "spawn/language/suggest.h"
+#include "core/suggest.h"
 #include "spawn/lsystem/format.h"
 #include "spawn/lsystem/scanner.h"
 
@@ -97,7 +97,7 @@ private:
       if (!r.failed() && !r.atEnd()) r.error("expected the end of the line; found " + r.found());
       return;
     }
-    Suggestion suggestion(name);
+    core::Suggestion suggestion(name);
     for (const auto& [known, how] : settings) suggestion.offer(known);
     diagnostics_.error(place, "there is no setting '" + name + "'" + suggestion.text());
   }
@@ -191,7 +191,7 @@ private:
   uint32_t readShape(Reader& r) {
     const Place place = r.place();
     const std::string name = r.word();
-    Suggestion suggestion(name);
+    core::Suggestion suggestion(name);
     for (const ShapeName& s : kShapes) {
       if (s.name == name) return s.shape;
       suggestion.offer(s.name);
