@@ -23,10 +23,10 @@ using spawn::Operator;
 // ---------------------------------------------------------------- grammars with one operator
 
 /// The first type of shape on which it has an effect, of those without corners of their own.
-const char* shapeFor(const Operator& op) {
+uint32_t shapeFor(const Operator& op) {
   for (const uint32_t shape : {shader::kShapeBox, shader::kShapeQuad})
-    if (op.shapes >> shape & 1) return spawn::shapeName(shape);
-  return "no shape";
+    if (op.shapes >> shape & 1) return shape;
+  return shader::kShapeRoof;
 }
 std::string valueFor(char letter, const std::string& value) {
   return letter == 'a' ? "Y" : letter == 'm' ? "ANCHOR_TO_START" : letter == 't' ? "tag" : value;
@@ -49,7 +49,7 @@ std::string callOf(const Operator& op, const std::string& arguments, uint32_t co
   return name + "(" + arguments + ")" + successors(op, count);
 }
 std::string grammarWith(const Operator& op, const std::string& call) {
-  return std::string("axiom ") + shapeFor(op) + " A; terminal T (1, 0); terminal U (1, 1); A = " + call + ";";
+  return std::string("axiom ") + spawn::shapeName(shapeFor(op)) + " A; terminal T (1, 0); terminal U (1, 1); A = " + call + ";";
 }
 std::string grammarOf(const Operator& op, const std::string& value = "0.75") {
   return grammarWith(op, callOf(op, argumentsOf(op, value), successorsOf(op)));
@@ -137,7 +137,7 @@ TEST(OperatorTable, BuildersMakeWhatTextMakes) {
     SCOPED_TRACE(op.name);
     GpgpGrammarBuilder builder = nullptr;
     ASSERT_EQ(gpgpCreateGrammarBuilder(&builder), GPGP_SUCCESS);
-    gpgpAddAxiom(builder, op.shapes >> shader::kShapeBox & 1 ? GPGP_SHAPE_BOX : GPGP_SHAPE_QUAD, nullptr, 0, "A");
+    gpgpAddAxiom(builder, shapeFor(op), nullptr, 0, "A");
     gpgpAddTerminal(builder, "T", 1, 0);
     gpgpAddTerminal(builder, "U", 1, 1);
     std::vector<GpgpGrammarValue> values;
@@ -271,7 +271,7 @@ TEST(OperatorTable, TheInterpreterDoesWhatTheEvaluatorDoes) {
       ASSERT_EQ(expected.terminals, 1u);
       const GpgpInstance& instance = expected.instances[0];
       EXPECT_EQ(words[shape.node + shader::kNodeArgument], instance.terminal);
-      EXPECT_EQ(shader::shapeType(shape), instance.shape);
+      EXPECT_EQ(shader::instanceShape(shape), instance.shape);
       EXPECT_EQ(shape.seed, instance.seed);
       EXPECT_EQ(shape.size, shader::vec3(instance.size[0], instance.size[1], instance.size[2]));
       EXPECT_EQ(shape.position, shader::vec3(instance.transform[3], instance.transform[7], instance.transform[11]));

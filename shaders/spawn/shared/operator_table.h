@@ -35,7 +35,8 @@
   ROW(ToFace, 9u, Passing, "v", 1, One, kAnyShape, GPGP_OPERATOR_TO_FACE, toSideOf(s, GPGP_VALUE))                     \
   ROW(SetAttribute, 10u, Passing, "v", 1, One, kAnyShape, GPGP_OPERATOR_SET_ATTRIBUTE, setCustom(s, GPGP_VALUE))       \
   ROW(RaiseRoof, 11u, Passing, "vvv", 1, One, kRectangleShapes, GPGP_OPERATOR_RAISE_ROOF, raiseRoof(s, GPGP_VALUES))   \
-  ROW(ToRoofFace, 12u, Passing, "vvv", 1, One, kAnyShape, GPGP_OPERATOR_TO_ROOF_FACE, toRoofFace(s, GPGP_VALUES))      \
+  ROW(ToRoofFace, 12u, Passing, "vvv", 1, One, 1u << kShapeRoof, GPGP_OPERATOR_TO_ROOF_FACE,                           \
+      toRoofFace(s, GPGP_VALUES))                                                                                      \
   LAST(SetGeometry, 13u, Passing, "sp", 1, One, kAnyShape, kNotWritten, setGeometry(s, GPGP_ARGUMENT, GPGP_ARGUMENT2))
 #define GPGP_OPERATOR_TABLE(ROW, LAST)                                                                                 \
   LAST(Terminal, 0u, Ending, "", 0, One, kAnyShape, kNotWritten, )                                                     \
