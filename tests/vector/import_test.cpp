@@ -1099,7 +1099,7 @@ TEST(SvgImport, EmbeddedImagesGoToWhoeverDecodes) {
   seen.decodes = true;
   std::string many;
   for (int i = 0; i < GPGP_MAX_IMAGES + 2; ++i) { // the first too many twice
-    const int which = std::min(i, GPGP_MAX_IMAGES);
+    const int which = std::min(i, int(GPGP_MAX_IMAGES));
     const char digits[] = {'A', char('A' + which / 676), char('A' + which / 26 % 26), char('A' + which % 26), 0};
     many += std::string("<image width='9' height='9' href='data:;base64,") + digits + "'/>\n";
   }

@@ -83,9 +83,12 @@ std::string omitted(const GpgpCanvasReport& report, uint32_t paths, bool said) {
       std::to_string(report.pathsDropped) + " of " + std::to_string(paths) + " paths were left out";
   if (report.layerOperations && !words && report.tileEntries <= report.tileEntriesGiven)
     return text + ": the device has no room for all layers side by side; a smaller --size needs less";
+  if (report.tilePatches > report.tilePatchesGiven && said) // room for twice as many comes with them
+    return text + "; --max-tile-entries " + std::to_string(std::max(report.tileEntries, report.tilePatches / 2 + 1)) +
+           " would hold them, or somewhat more";
   if (report.tilePatches > report.tilePatchesGiven)
-    return text + ": their patches pass " + std::to_string(report.tilePatches) +
-           " tiles, and the device has room for " + std::to_string(report.tilePatchesGiven) +
+    return text + ": they need " + std::to_string(report.tilePatches) +
+           " patches in tiles, and the device has room for " + std::to_string(report.tilePatchesGiven) +
            "; a smaller --size needs fewer";
   if (said) // as many words come with them
     return text + "; --max-tile-entries " + std::to_string(std::max(report.tileEntries, words ? report.tileWords : 0)) +

@@ -168,22 +168,13 @@ struct PicturesAround {
     return true;
   }
 };
-PicturesAround pictureAround(const List& list, size_t index) {
+PicturesAround picturesAround(const List& list, const List::Command& command) {
   PicturesAround around;
-  if (list.layers().empty() && !list.masks()) return around;
-  const auto commands = list.commands();
-  for (uint32_t i = 0; i < index;) {
-    const List::Command& c = commands[i];
-    const bool picture = c.kind == List::Kind::layer || c.kind == List::Kind::mask;
-    if (picture && i + c.count < index) {
-      i += c.count + 1; // it ends before
-      continue;
-    }
-    if (picture) {
-      around.masked = around.masked || c.kind == List::Kind::mask;
-      if (c.kind == List::Kind::layer) around.layers[around.count++] = i;
-    }
-    ++i;
+  for (uint32_t open = command.picture; open;) {
+    const List::Command& c = list.commands()[open - 1];
+    around.masked = around.masked || c.kind == List::Kind::mask;
+    if (c.kind == List::Kind::layer) around.layers[around.count++] = open - 1;
+    open = c.picture;
   }
   return around;
 }
@@ -198,7 +189,7 @@ Result<bool> hitList(const List& list, const Map& map, double x, double y, GpgpH
     const List::Command& command = list.commands()[i - 1];
     const List::Space& space = command.space;
     if (command.kind == List::Kind::layer || command.kind == List::Kind::mask) continue;
-    const auto around = pictureAround(list, i - 1);
+    const auto around = picturesAround(list, command);
     if (around.masked) continue;
     if (space.clip != clip) shown = clipsShow(list, clip = space.clip, map, x, y);
     if (!around.shows(list, map, x, y)) continue;

@@ -296,6 +296,7 @@ List::Command& List::addCommand(Kind what) {
   command.firstEntry = entries_;
   command.space = state_.space;
   command.opacity = state_.opacity;
+  command.picture = state_.open;
   return command;
 }
 

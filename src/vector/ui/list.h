@@ -68,6 +68,7 @@ public:
     Space space;
     float opacity = 1;       ///< of a drawing or layer; the others have it in their colours
     uint32_t firstImage = 0; ///< of a drawing
+    uint32_t picture = 0;    ///< 1 + the command of the innermost layer or mask that it lies in; 0: none
     const core::Slot* slot = nullptr;
     uint32_t generation = 0;
     uint64_t id = 0; ///< of triangles, a text or a drawing
