@@ -163,6 +163,9 @@ void WindowState::beforeRendering() {
     if (node->dirty && drawn.size() < budgets_.itemsPerFrame) drawn.push_back(node);
     fresh |= !node->picture().cleared();
   }
+  // Those that wait are first in the next frame.
+  if (drawn.size() == budgets_.itemsPerFrame)
+    std::rotate(nodes_.begin(), std::find(nodes_.begin(), nodes_.end(), drawn.back()) + 1, nodes_.end());
   if (drawn.empty() && !fresh) return;
 
   window_.beginExternalCommands();

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -32,13 +33,19 @@ struct Subcommand {
   Work work;
 };
 
-/// Names the first argument that looks like an option and is none of the command's. Empty where there is none.
+/// Names the first argument that looks like an option and is none of the command's, nor the value of one. Empty where
+/// there is none.
 std::string unknownOption(const CLI::App& command, int argc, char** argv) {
-  for (int i = 2; i < argc && std::string_view(argv[i]) != "--"; ++i) {
+  bool isValue = false;
+  for (int i = 1; i < argc && std::string_view(argv[i]) != "--"; ++i) {
     const std::string_view argument = argv[i];
-    if (!argument.starts_with("--")) continue;
     const std::string name(argument.substr(0, argument.find('=')));
-    if (command.get_option_no_throw(name)) continue;
+    if (std::exchange(isValue, false) || !argument.starts_with("-")) continue;
+    if (const CLI::Option* option = command.get_option_no_throw(name)) {
+      isValue = option->get_items_expected_max() > 0 && name.size() == argument.size();
+      continue;
+    }
+    if (!argument.starts_with("--")) continue;
     gpgp::core::Suggestion suggestion(name);
     for (const CLI::Option* option : command.get_options())
       for (const std::string& known : option->get_lnames()) suggestion.offer("--" + known);

@@ -415,7 +415,8 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   const spawn::Graph& graph = grammar.graph;
   const AxiomDefaults defaults{options.size, options.seed,
                                options.start.empty() ? grammar.starts()
-                                                     : std::vector{startNamed(grammar, options.start)}};
+                                                     : std::vector{startNamed(grammar, options.start)},
+                               options.interval};
   const uint32_t grammarCount = static_cast<uint32_t>(defaults.starts.size());
   const std::vector<GpgpAxiom> start =
       options.axiomFile.empty() ? axiomGrid(options.axioms ? options.axioms : grammarCount, options.spacing, defaults)

@@ -192,7 +192,7 @@ Measured<GpgpSpawnReport> Deriver::measureRanges(const Grammar& grammar, const s
       session_.measure(*spawner_, "deriving", repeat,
                        [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
                          const VkBufferCopy all{0, 0, own.size()};
-                         vkCmdCopyBuffer(commands, zeroed.handle(), own.handle(), 1, &all);
+                         session_.device().vk().vkCmdCopyBuffer(commands, zeroed.handle(), own.handle(), 1, &all);
                          GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
                          info.base = base;
                          info.grammar = grammar.get();

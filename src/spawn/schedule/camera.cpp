@@ -34,8 +34,8 @@ core::Result<shader::View> viewOf(const GpgpSpawnCamera* camera) {
   const float* m = camera->viewProjection;
   if (!std::all_of(m, m + 16, [](float x) { return std::isfinite(x); }) ||
       !std::all_of(camera->position, camera->position + 3, [](float x) { return std::isfinite(x); }))
-    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera->viewProjection or position is not finite");
-  if (!camera->height) return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera->height is 0");
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "the camera's viewProjection or position is not finite");
+  if (!camera->height) return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "the camera's height is 0");
   const auto row = [&](int r) { return glm::dvec4(m[r], m[4 + r], m[8 + r], m[12 + r]); };
   const glm::dvec4 x = row(0), y = row(1), z = row(2), w = row(3);
   const glm::dvec3 position(camera->position[0], camera->position[1], camera->position[2]), forward(w);
@@ -47,7 +47,7 @@ core::Result<shader::View> viewOf(const GpgpSpawnCamera* camera) {
   if (!parallel) up -= forward * (glm::dot(up, forward) / (depth * depth));
   const double pixels = 0.5 * camera->height * glm::length(up) / unit;
   if (!(pixels > 0) || !std::isfinite(pixels))
-    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera->viewProjection has no height");
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "the camera's viewProjection has no height");
   const double scale = std::max(glm::length(glm::dvec3(x)), glm::length(glm::dvec3(y)));
   const double normals = parallel ? scale : depth;
   const auto plane = [&](const glm::dvec4& p) { return planeOf(p, position, normals); };
