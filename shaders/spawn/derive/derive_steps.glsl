@@ -125,11 +125,19 @@ void main() {
   bool fetched = false; // axioms, which are made of nothing
   uint first = 0;
   uint batches = 0;
+#ifdef GPGP_QUEUES
   bool drained = false; // nothing is left to fetch
   const uint fair = count / gl_NumWorkGroups.x;
   uint fetchedShapes = 0;
+#endif
   const uint mostTurns = mostTurnsOf(count);
-  for (uint turns = 0; turns < mostTurns || made < total;) {
+#ifdef GPGP_QUEUES
+  uint batchTurns = 0; // none of a batch that is chosen again
+  for (uint turns = 0; turns < mostTurns || made < total; turns += batchTurns) {
+    batchTurns = record.batchTurns;
+#else
+  for (uint turns = 0; turns < mostTurns || made < total; turns += record.batchTurns) {
+#endif
     if (made >= total) { // the next batch: what waits in its place, more from the stack, or else from the queue
       total = 0;
       made = 0;
@@ -174,13 +182,15 @@ void main() {
       if (waiting == 0) {
         if (lane == 0) first = atomicAdd(rounds[round].taken, share);
         first = fromFirst(first);
-        if (first >= count) {
-          if (stackSize == 0) break;
-          drained = true; // and there are queues
+#ifdef GPGP_QUEUES
+        if (first >= count && stackSize > 0) {
+          drained = true;
+          batchTurns = 0;
           continue;
         }
+#endif
+        if (first >= count) break;
         waiting = min(share, count - first);
-        fetchedShapes += waiting;
         fetched = round == 0;
         if (fetched) {
           total = waiting;
@@ -189,7 +199,11 @@ void main() {
           waits = true;
         }
 #ifdef GPGP_QUEUES
-        if (!fetched) continue;
+        fetchedShapes += waiting;
+        if (!fetched) {
+          batchTurns = 0;
+          continue;
+        }
 #endif
       }
       if (!fetched) {
@@ -279,7 +293,6 @@ void main() {
     }
     if (end == kEndTerminal) hash += hashOfTerminal(s);
     emit(end == kEndTerminal, places & 0xffffu, terminals, firstTerminal, s);
-    turns += record.batchTurns;
   }
 
   keepsRest = false;
