@@ -39,6 +39,7 @@ TEST(CliVector, DrawsWhatTheFileSays) {
                                                 "tile_entries",
                                                 "tile_entries_given",
                                                 "tile_words",
+                                                "tile_patches",
                                                 "tile_words_given",
                                                 "patches_per_tile",
                                                 "curves_per_patch_tiled",

@@ -242,8 +242,8 @@ TEST(GrammarBuilder, AnAxiomIsNeededAndItsShapeMustExist) {
     errors.push_back(std::string("error: axiom") + message);
     EXPECT_EQ(messagesOf(g), errors);
   };
-  g.axiom(17, "T");
-  expectMore(": there is no shape 17; expected a GpgpShape");
+  g.axiom(40, "T");
+  expectMore(": there is no shape 40; expected a GpgpShape");
   g.axiom(GPGP_SHAPE_BOX, "U");
   expectMore(": there is no rule or terminal 'U'");
   g.axiom(GPGP_SHAPE_BOX, {g.corner(0, 0)}, "T");

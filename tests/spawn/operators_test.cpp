@@ -49,7 +49,8 @@ std::string callOf(const Operator& op, const std::string& arguments, uint32_t co
   return name + "(" + arguments + ")" + successors(op, count);
 }
 std::string grammarWith(const Operator& op, const std::string& call) {
-  return std::string("axiom ") + spawn::shapeName(shapeFor(op)) + " A; terminal T (1, 0); terminal U (1, 1); A = " + call + ";";
+  return std::string("axiom ") + spawn::shapeName(shapeFor(op)) +
+         " A; terminal T (1, 0); terminal U (1, 1); A = " + call + ";";
 }
 std::string grammarOf(const Operator& op, const std::string& value = "0.75") {
   return grammarWith(op, callOf(op, argumentsOf(op, value), successorsOf(op)));

@@ -614,7 +614,7 @@ TEST_F(RangesTest, WhatHasNoRangesIsRefused) {
   GpgpSpawnCamera camera{};
   bad = good;
   bad.camera = &camera;
-  refuses(spawner, bad, "camera->height is 0");
+  refuses(spawner, bad, "the camera's height is 0");
   gpgpDestroyAsset(grammar);
 }
 

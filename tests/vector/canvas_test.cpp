@@ -692,7 +692,7 @@ TEST_F(CanvasTest, MissingAndTooManyImagesAreRefusedWithWords) {
     images[0].layout = VK_IMAGE_LAYOUT_UNDEFINED;
     expect(GPGP_ERROR_INVALID_ARGUMENT, "images[0].layout");
     images.assign(9, white.view());
-    expect(GPGP_ERROR_UNSUPPORTED, "at most 8");
+    expect(GPGP_ERROR_INVALID_ARGUMENT, "imageCount is 9; the canvas was made for 8");
   });
   const auto refused = [&](const char* words) {
     GpgpDrawingCreateInfo info = GPGP_DRAWING_CREATE_INFO_INIT;
@@ -702,8 +702,8 @@ TEST_F(CanvasTest, MissingAndTooManyImagesAreRefusedWithWords) {
     EXPECT_EQ(gpgpCreateDrawing(context, &info, &none), GPGP_ERROR_INVALID_ARGUMENT);
     EXPECT_NE(lastMessage().find(words), std::string::npos) << lastMessage();
   };
-  paint.image = 8;
-  refused("image.image is 8");
+  paint.image = GPGP_MAX_IMAGES;
+  refused("image.image is 1024");
   paint = {0, {1, 2, 2, 4, 0, 0}};
   refused("no inverse");
   paint = {0, {NAN, 0, 0, 1, 0, 0}};

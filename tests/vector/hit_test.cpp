@@ -267,8 +267,8 @@ TEST_F(CanvasTest, WrongCallsOfListsSayWhatIsWrong) {
   shapes[2].radii[1] = nan, shape("shapes[2].radii");
   shapes[2].width = -1, shape("shapes[2].width is -1");
   shapes[2].kind = GPGP_LIST_LINE, shape("shapes[2].width of a line");
-  GpgpListImage image{8, {0, 0, 1, 1}, {}, {}};
-  shapes[2].image = &image, shape("image.image is 8");
+  GpgpListImage image{GPGP_MAX_IMAGES, {0, 0, 1, 1}, {}, {}};
+  shapes[2].image = &image, shape("image.image is 1024");
   image.image = 0, image.sourceBorders[0] = 0.7f, image.sourceBorders[2] = 0.7f;
   shapes[2].image = &image, shape("image.sourceBorders are wider");
   GpgpGradient gradient{};

@@ -716,7 +716,7 @@ TEST(Baked, GroupsAndImagesComeBackAndAreChecked) {
   EXPECT_TRUE(refused([](Drawing& d) { d.layers[0].opacity = 1; }));
   EXPECT_TRUE(refused([](Drawing& d) { d.layers[1].parent = 2; }));
   EXPECT_TRUE(refused([](Drawing& d) { d.layers[1].depth = 9; }));
-  EXPECT_TRUE(refused([](Drawing& d) { d.paints[0].firstStop = 8; }));
+  EXPECT_TRUE(refused([](Drawing& d) { d.paints[0].firstStop = GPGP_MAX_IMAGES; }));
   EXPECT_TRUE(refused([](Drawing& d) { d.paints[0].stopCount = 1; }));
 }
 

@@ -193,7 +193,7 @@ TEST_F(ArgumentsTest, PassesAreThoseOfTheDocumentation) {
   ASSERT_EQ(gpgpGetPasses(recorder, &passes, nullptr), GPGP_SUCCESS);
   std::vector<const char*> names(passes);
   ASSERT_EQ(gpgpGetPasses(recorder, &passes, names.data()), GPGP_SUCCESS);
-  ASSERT_EQ(passes, contextFeatures & GPGP_FEATURE_BUFFER_INT64_ATOMICS ? 19u : 23u); // ids with depths, or after them
+  ASSERT_EQ(passes, contextFeatures & GPGP_FEATURE_BUFFER_INT64_ATOMICS ? 20u : 24u); // ids with depths, or after them
   std::ifstream file(GPGP_TEST_DATA "/../../docs/internals/visibility.md");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   size_t at = 0;

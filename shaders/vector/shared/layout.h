@@ -231,8 +231,8 @@ struct CanvasCounters {
   uint patchBlocks;                  // listed: squares of 8 x 8 tiles that a patch's curves pass
   uint tilePatches;                  // needed: patches in tiles that their curves pass
   uint patchesX, patchesY, patchesZ; // workgroups of the pass that fills from them
-  uint imageTiles, storedImages;         // needed; those that have room
-  uint imagesDropped;                    // paths whose images have none
+  uint imageTiles, storedImages;     // needed; those that have room
+  uint imagesDropped;                // paths whose images have none
 };
 
 // A CPatch (patches/tile.h) of a drawing's table: the box that it lies in: left, top, right, bottom; up to

@@ -147,14 +147,14 @@ uint32_t AlphaTests::flagsOf(int texture, float cutoff, Remarks& remarks) {
   if (static_cast<size_t>(texture) >= gltf_.textures.size()) fail("a material names no texture");
   const tinygltf::Texture& from = gltf_.textures[static_cast<size_t>(texture)];
   if (model_.alphaTests.size() == kMostTests) {
-    ++remarks["pairs of a texture and a cutoff are beyond the 16 alpha tests that are read; what they cut was taken as opaque"];
+    ++remarks["pairs of a texture and a cutoff are beyond the 16 alpha tests that are read; what they cut was taken as "
+              "opaque"];
     return 0;
   }
   int source = from.source;
   if (const auto webp = from.extensions.find("EXT_texture_webp"); source < 0 && webp != from.extensions.end())
     if (webp->second.Get("source").IsInt()) source = webp->second.Get("source").GetNumberAsInt();
-  const host::Picture picture =
-      source < 0 ? host::Picture() : host::decodePicture(imageBytes(gltf_, source, folder_));
+  const host::Picture picture = source < 0 ? host::Picture() : host::decodePicture(imageBytes(gltf_, source, folder_));
   if (picture.rgba.empty()) {
     ++remarks["textures of alpha tests are no PNG, JPEG or WebP that can be read; what they cut was taken as opaque"];
     return 0;

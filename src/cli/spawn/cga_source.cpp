@@ -2,9 +2,9 @@
 
 #include "cli/shared/command.h"
 #include "cli/shared/messages.h"
+#include "core/suggest.h"
 #include "host/files.h"
 #include "spawn/cga/program_format.h"
-#include "core/suggest.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -11,8 +11,8 @@
 #include "cli/spawn/spawned_gltf.h"
 #include "cli/spawn/unit_shapes.h"
 #include "cli/tune/tuner.h"
-#include "host/files.h"
 #include "core/suggest.h"
+#include "host/files.h"
 #include "spawn/schedule/camera.h"
 
 #include <gpgp/spawn.h>
@@ -413,10 +413,9 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     throw Usage("--changed is for --output instances without --sorted, --slice and --max-instances");
   const BakedGraph grammar = bakeGraph(options.grammars, options.set);
   const spawn::Graph& graph = grammar.graph;
-  const AxiomDefaults defaults{options.size, options.seed,
-                               options.start.empty() ? grammar.starts()
-                                                     : std::vector{startNamed(grammar, options.start)},
-                               options.interval};
+  const AxiomDefaults defaults{
+      options.size, options.seed,
+      options.start.empty() ? grammar.starts() : std::vector{startNamed(grammar, options.start)}, options.interval};
   const uint32_t grammarCount = static_cast<uint32_t>(defaults.starts.size());
   const std::vector<GpgpAxiom> start =
       options.axiomFile.empty() ? axiomGrid(options.axioms ? options.axioms : grammarCount, options.spacing, defaults)

@@ -51,9 +51,8 @@ std::optional<Canvas> largerCanvas(Session& session, GpgpCanvasCreateInfo& info,
         next.maxLayerPixels = std::max(info.maxLayerPixels, std::min(report.layerPixels, 1u << 28));
       next.maxLayerOperations = std::max(info.maxLayerOperations, std::min(report.layerOperations, 65536u));
       if (report.imagePixels > report.imagePixelsGiven) next.maxImagePixels = std::min(report.imagePixels, 1u << 28);
-      const bool layers = next.maxImagePixels != info.maxImagePixels ||
-                          next.maxTilePatches > report.tilePatchesGiven || next.maxDrawings > report.itemsGiven ||
-                          next.maxLayerPixels > report.layerPixelsGiven ||
+      const bool layers = next.maxImagePixels != info.maxImagePixels || next.maxTilePatches > report.tilePatchesGiven ||
+                          next.maxDrawings > report.itemsGiven || next.maxLayerPixels > report.layerPixelsGiven ||
                           next.maxLayerOperations > report.layerOperationsGiven;
       if (!layers && next.maxTileEntries == report.tileEntriesGiven && next.maxTileWords == report.tileWordsGiven)
         continue;

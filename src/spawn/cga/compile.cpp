@@ -1,9 +1,9 @@
 // From modules to a program: which definitions there are, in which order attributes get their values, and offsets.
 #include "spawn/cga/compile.h"
 
+#include "core/suggest.h"
 #include "spawn/cga/compiler.h"
 #include "spawn/cga/lower.h"
-#include "core/suggest.h"
 
 #include <algorithm>
 #include <filesystem>

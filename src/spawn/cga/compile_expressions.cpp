@@ -1,6 +1,6 @@
 // Expressions to code that leaves one value on the machine's stack.
-#include "spawn/cga/compiler.h"
 #include "core/suggest.h"
+#include "spawn/cga/compiler.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // Bodies of rules to code that changes the current shape and makes new ones.
-#include "spawn/cga/compiler.h"
 #include "core/suggest.h"
+#include "spawn/cga/compiler.h"
 
 #include <algorithm>
 #include <span>

@@ -1,7 +1,7 @@
 #include "spawn/cga/modules.h"
 
-#include "spawn/cga/parser.h"
 #include "core/suggest.h"
+#include "spawn/cga/parser.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -2,9 +2,9 @@
 #include "spawn/gml/machine.h"
 
 #include "core/math.h"
+#include "core/suggest.h"
 #include "spawn/language/corners.h"
 #include "spawn/language/lexer.h"
-#include "core/suggest.h"
 
 #include <algorithm>
 #include <cstring>

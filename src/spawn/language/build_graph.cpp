@@ -1,5 +1,6 @@
 #include "spawn/language/build_graph.h"
 
+#include "core/suggest.h"
 #include "spawn/graph/export_labels.h"
 #include "spawn/language/append_graph.h"
 #include "spawn/language/check_context.h"
@@ -8,7 +9,6 @@
 #include "spawn/language/expressions.h"
 #include "spawn/language/resolve_rules.h"
 #include "spawn/language/spellings.h"
-#include "core/suggest.h"
 #include "spawn/shared/expression.h"
 
 #include <algorithm>

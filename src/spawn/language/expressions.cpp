@@ -1,7 +1,7 @@
 #include "spawn/language/expressions.h"
 
-#include "spawn/language/spellings.h"
 #include "core/suggest.h"
+#include "spawn/language/spellings.h"
 #include "spawn/shared/expression.h"
 
 #include <algorithm>

@@ -12,7 +12,7 @@ struct CanvasSizes {
   ItemBudgets items;
   bool software; ///< the device has shaders without barriers
   LayerBudgets layers{};
-  uint32_t maxTilePatches = 0; ///< patches in tiles that their curves pass; 0: the canvas draws no patches
+  uint32_t maxTilePatches = 0;             ///< patches in tiles that their curves pass; 0: the canvas draws no patches
   uint32_t imagePages = 1, imageTiles = 0; ///< tiles: of colours that are found before the raster
 
   uint64_t tiles() const;     ///< of the canvas, or of pictures of layers

@@ -328,8 +328,9 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   r.groups[kPatchBlocks] = {512, 1, 1};
   // On software devices workgroups that have nothing to do cost as much as others. There a workgroup takes at most
   // 32768 tiles, which ends before their loops do.
-  r.groups[kImageTiles] = sizes_.software ? std::array<uint32_t, 3>{std::max(divide(sizes_.imageTiles, 32768), 2u), 16, 1}
-                                          : std::array<uint32_t, 3>{16, 64, 1};
+  r.groups[kImageTiles] = sizes_.software
+                              ? std::array<uint32_t, 3>{std::max(divide(sizes_.imageTiles, 32768), 2u), 16, 1}
+                              : std::array<uint32_t, 3>{16, 64, 1};
   r.groups[kClear] = {64, 1, 1};
   r.groups[kFill] = {std::min(std::max(header.segmentCount / 160, divide(height, 64)), 4096u), 1, 1};
   r.groups[kSmallGlyphs] = rows(std::max(header.itemCount, 1u));
