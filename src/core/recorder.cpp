@@ -90,6 +90,12 @@ Result<void> Recorder::init(PassList passes, std::span<const DrawShaders> draws)
     images += ofResource == ResourceKind::image;
     uniforms += ofResource == ResourceKind::uniforms;
   }
+  const uint32_t buffers = resourceCount - images - textures - uniforms;
+  if (buffers > device.limits.maxPerStageDescriptorStorageBuffers) // more than is asked of every device
+    return makeError(GPGP_ERROR_UNSUPPORTED,
+                     "this recorder takes %u storage buffers a stage, but the device has %u "
+                     "(maxPerStageDescriptorStorageBuffers)",
+                     buffers, device.limits.maxPerStageDescriptorStorageBuffers);
   VkDescriptorSetLayoutCreateInfo setInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   setInfo.bindingCount = resourceCount - textures;
   setInfo.pBindings = bindings.data();
@@ -112,8 +118,7 @@ Result<void> Recorder::init(PassList passes, std::span<const DrawShaders> draws)
   if (result != VK_SUCCESS) return vulkanError(result, "vkCreatePipelineLayout");
 
   const uint32_t slotCount = context.maxFramesInFlight * context.maxRecordingsPerFrame;
-  std::array<VkDescriptorPoolSize, 4> sizes{
-      {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, std::max(1u, (resourceCount - images - textures - uniforms) * slotCount)}}};
+  std::array<VkDescriptorPoolSize, 4> sizes{{{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, std::max(1u, buffers * slotCount)}}};
   uint32_t sizeCount = 1;
   if (uniforms) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, uniforms * slotCount};
   if (images) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, images * slotCount};

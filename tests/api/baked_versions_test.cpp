@@ -11,7 +11,13 @@ namespace {
 
 struct BakedVersions : DeviceTest {
   /// Loads the bytes as they are, then with each other version, which is the second word of all formats.
-  template <class Create> void check(const Blob& blob, const char* doWhat, const Create& create) {
+  template <class Asset, class Info> void check(const Blob& blob, const char* doWhat) {
+    const auto create = [this](const std::vector<char>& data) {
+      auto info = init<Info>();
+      info.data = data.data();
+      info.size = data.size();
+      return Asset::create(context, info).code();
+    };
     std::vector<char> bytes(static_cast<const char*>(blob.data()), static_cast<const char*>(blob.data()) + blob.size());
     EXPECT_EQ(create(bytes), GPGP_SUCCESS) << lastMessage();
     uint32_t version = 0;
@@ -37,12 +43,7 @@ TEST_F(BakedVersions, Drawing) {
     source.data = text;
     source.size = sizeof text - 1;
     source.methods = methods;
-    check(*compileSvg(source), "bake it again", [&](const std::vector<char>& bytes) {
-      auto info = init<GpgpDrawingCreateInfo>();
-      info.data = bytes.data();
-      info.size = bytes.size();
-      return Drawing::create(context, info).code();
-    });
+    check<Drawing, GpgpDrawingCreateInfo>(*compileSvg(source), "bake it again");
   }
 }
 
@@ -64,56 +65,33 @@ TEST_F(BakedVersions, Glyphs) {
   source.glyphCount = 1;
   GpgpBlob raw{};
   ASSERT_EQ(gpgpCompileGlyphs(&source, &raw), GPGP_SUCCESS);
-  check(Blob(raw), "bake them again", [&](const std::vector<char>& bytes) {
-    auto info = init<GpgpGlyphSetCreateInfo>();
-    info.data = bytes.data();
-    info.size = bytes.size();
-    return GlyphSet::create(context, info).code();
-  });
+  check<GlyphSet, GpgpGlyphSetCreateInfo>(Blob(raw), "bake them again");
+}
+
+/// A text's source whose messages go into `why`.
+template <class Source, size_t size> Source sourceOf(const char* name, const char (&text)[size], std::string& why) {
+  auto source = init<Source>();
+  source.name = name;
+  source.text = text;
+  source.size = size - 1;
+  source.messageUserData = &why;
+  source.messageFn = [](void* user, const GpgpCompileMessage* m) { *static_cast<std::string*>(user) += m->text; };
+  return source;
 }
 
 TEST_F(BakedVersions, Grammar) {
-  const char text[] = "axiom Box A; terminal Solid (1, 0); A = Solid;";
-  auto source = init<GpgpGrammarSource>();
-  source.name = "a.pga";
-  source.text = text;
-  source.size = sizeof text - 1;
-  GpgpBlob raw{};
   std::string why;
-  source.messageUserData = &why;
-  source.messageFn = [](void* user, const GpgpCompileMessage* m) { *static_cast<std::string*>(user) += m->text; };
-  ASSERT_EQ(gpgpCompileGrammar(&source, &raw), GPGP_SUCCESS) << why;
-  check(Blob(raw), "bake it again", [&](const std::vector<char>& bytes) {
-    auto info = init<GpgpGrammarCreateInfo>();
-    info.data = bytes.data();
-    info.size = bytes.size();
-    GpgpAsset asset = nullptr;
-    const GpgpResult code = gpgpCreateGrammar(context, &info, &asset);
-    gpgpDestroyAsset(asset);
-    return code;
-  });
+  const auto blob =
+      compileGrammar(sourceOf<GpgpGrammarSource>("a.pga", "axiom Box A; terminal Solid (1, 0); A = Solid;", why));
+  ASSERT_TRUE(blob) << why;
+  check<gpgp::Grammar, GpgpGrammarCreateInfo>(*blob, "bake it again");
 }
 
 TEST_F(BakedVersions, Lsystem) {
-  const char text[] = "axiom: F\niterations: 2\nF --> FF\n";
-  auto source = init<GpgpLsystemSource>();
-  source.name = "a.lsys";
-  source.text = text;
-  source.size = sizeof text - 1;
-  GpgpBlob raw{};
   std::string why;
-  source.messageUserData = &why;
-  source.messageFn = [](void* user, const GpgpCompileMessage* m) { *static_cast<std::string*>(user) += m->text; };
-  ASSERT_EQ(gpgpCompileLsystem(&source, &raw), GPGP_SUCCESS) << why;
-  check(Blob(raw), "compile it again", [&](const std::vector<char>& bytes) {
-    auto info = init<GpgpLsystemCreateInfo>();
-    info.data = bytes.data();
-    info.size = bytes.size();
-    GpgpAsset asset = nullptr;
-    const GpgpResult code = gpgpCreateLsystem(context, &info, &asset);
-    gpgpDestroyAsset(asset);
-    return code;
-  });
+  const auto blob = compileLsystem(sourceOf<GpgpLsystemSource>("a.lsys", "axiom: F\niterations: 2\nF --> FF\n", why));
+  ASSERT_TRUE(blob) << why;
+  check<gpgp::Lsystem, GpgpLsystemCreateInfo>(*blob, "compile it again");
 }
 
 } // namespace

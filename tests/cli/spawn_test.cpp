@@ -55,6 +55,7 @@ TEST(CliSpawn, CountsTerminals) {
                                                 "passes",
                                                 "cpu_reference_terminals",
                                                 "cpu_reference_ms",
+                                                "changed",
                                                 "image",
                                                 "out"}));
   EXPECT_EQ(tower["status"], "GPGP_SUCCESS");
@@ -498,7 +499,7 @@ TEST(CliSpawn, LinesOfGeoJsonBecomeAxiomsAtIntervals) {
     const size_t name = all.find("wrong.geojson:");
     return name == std::string::npos ? all : all.substr(name + 14);
   };
-  EXPECT_EQ(error("{\"type\": \"Polygon\"}").substr(0, 40), "1:1: error: \"Polygon\" is no geometry of a");
+  EXPECT_EQ(error("{\"type\": \"Polygon\"}").find("1:1: error: \"Polygon\" is no geometry of a"), 0u);
   EXPECT_EQ(error("{\"type\": \"LineString\", \"coordinates\": [[1, 2]]}"),
             "1:1: error: a line needs at least two places");
   EXPECT_EQ(error("{\"type\": \"LineString\", \"coordinates\": [[1, 2], [1, 2]]}"),
@@ -519,7 +520,8 @@ TEST(CliSpawn, ACameraAndAChange) {
   };
   const uint64_t finest = gpgpJson(with({}))["terminals"];
   EXPECT_EQ(finest, 64u * 283);
-  const uint64_t near = gpgpJson(with({"--camera", "0,4,60,0,3,0"}))["terminals"];
+  EXPECT_EQ(gpgpJson(with({"--camera", "0,4,60,0,3,0"}))["terminals"], finest); // all of it is large there
+  const uint64_t near = gpgpJson(with({"--camera", "0,4,250,0,3,0"}))["terminals"];
   const uint64_t far = gpgpJson(with({"--camera", "0,4,900,0,3,0"}))["terminals"];
   EXPECT_LT(near, finest);
   EXPECT_LT(far, near);
@@ -527,8 +529,14 @@ TEST(CliSpawn, ACameraAndAChange) {
   const json changed = gpgpJson(with({"--changed", "5"}))["changed"];
   EXPECT_EQ(changed["instances"], 3 * 283);
   EXPECT_EQ(changed["of"], finest);
-  EXPECT_NE(gpgpFailure(with({"--camera", "1,2,3,1,2,3"})).find("--camera"), std::string::npos);
-  EXPECT_NE(gpgpFailure(with({"--changed", "5", "--sorted"})).find("--changed"), std::string::npos);
+  const auto wrong = [&](const std::vector<std::string>& more, const char* option) {
+    const ProcessResult result = gpgp(with(more));
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_NE(result.err.find(option), std::string::npos) << result.err;
+  };
+  wrong({"--camera", "1,2,3,1,2,3"}, "--camera");
+  wrong({"--changed", "5", "--sorted"}, "--changed");
+  wrong({"--image-size", "64x64"}, "--image-size requires --image or --camera");
 }
 
 TEST(CliSpawn, AxiomFilesSayWhatIsWrongAndWhere) {

@@ -6,16 +6,6 @@
 namespace gpgp::spawn::cga {
 namespace {
 
-Derivation onTheCpu(const Program& program, const std::vector<Axiom>& lots, std::string* said = nullptr) {
-  DeriveOptions options;
-  options.keepScopes = true;
-  options.threads = 1;
-  Messages messages;
-  Derivation result = derive(program, lots, options, messages);
-  if (said) *said = allOf(messages);
-  return result;
-}
-
 Lots someLots(uint32_t seed) {
   Lots lots;
   lots.add(10, 20, seed);

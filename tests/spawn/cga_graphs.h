@@ -42,6 +42,17 @@ inline WithGraph withGraph(const std::string& text, const std::map<std::string, 
   return result;
 }
 
+/// By the CPU evaluator of .cga files.
+inline Derivation onTheCpu(const Program& program, const std::vector<Axiom>& lots, std::string* said = nullptr) {
+  DeriveOptions options;
+  options.keepScopes = true;
+  options.threads = 1;
+  Messages messages;
+  Derivation result = derive(program, lots, options, messages);
+  if (said) *said = allOf(messages);
+  return result;
+}
+
 /// Rectangles of a row, and the same for graphs.
 struct Lots {
   std::vector<Axiom> lots;

@@ -16,6 +16,16 @@ std::string ownGrammar(const std::string& name);
 /// Names of all own grammars.
 std::vector<std::string> ownGrammarNames();
 
+/// Two buckets, numbers that differ from axiom to axiom.
+inline constexpr const char* kTown = R"(axiom Box Lot;
+terminal Wall Floor (1, 0);
+terminal Roof (0, 3);
+Lot = RandomRule(Rand(0, 1)) { 0.7: House | 0.3: Tower };
+House = SubDiv(Y) { -1: Storey | 1: Roof };
+Tower = Repeat(Y, 1, ADJUST_TO_FILL) Storey;
+Storey = Repeat(X, Rand(1, 3), ADJUST_TO_FILL) SubDiv(Z) { -1: Wall | -2: Floor };
+)";
+
 /// Compiles text to words; throws with all messages where it has errors.
 std::vector<uint32_t> bake(const std::string& text, const std::vector<GpgpVariable>& variables = {});
 struct GrammarFile {

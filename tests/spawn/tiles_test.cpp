@@ -75,15 +75,6 @@ TEST(FreeRangesTest, TakesTheLowestAndJoinsNeighbours) { // against a bit for ea
 
 // ---------------------------------------------------------------- tiles on the device
 
-/// Two buckets, numbers that differ from axiom to axiom.
-const char* const kTown = R"(axiom Box Lot;
-terminal Wall Floor (1, 0);
-terminal Roof (0, 3);
-Lot = RandomRule(Rand(0, 1)) { 0.7: House | 0.3: Tower };
-House = SubDiv(Y) { -1: Storey | 1: Roof };
-Tower = Repeat(Y, 1, ADJUST_TO_FILL) Storey;
-Storey = Repeat(X, Rand(1, 3), ADJUST_TO_FILL) SubDiv(Z) { -1: Wall | -2: Floor };
-)";
 const char* const kOneBucket = "axiom Box A;\nterminal T (1, 0);\nA = Repeat(X, Rand(0.4, 2), ADJUST_TO_FILL) T;\n";
 
 std::vector<GpgpAxiom> lotsOf(uint32_t tile, uint32_t count, uint32_t version = 0) {

@@ -428,14 +428,6 @@ TEST_F(WorldTest, EvaluatorAndTilesTakeACamera) {
 
 // ---------------------------------------------------------------- ranges
 
-const char* const kTown = R"(axiom Box Lot;
-terminal Wall Floor (1, 0);
-terminal Roof (0, 3);
-Lot = RandomRule(Rand(0, 1)) { 0.7: House | 0.3: Tower };
-House = SubDiv(Y) { -1: Storey | 1: Roof };
-Tower = Repeat(Y, 1, ADJUST_TO_FILL) Storey;
-Storey = Repeat(X, Rand(1, 3), ADJUST_TO_FILL) SubDiv(Z) { -1: Wall | -2: Floor };
-)";
 constexpr uint32_t kPoison = 0xbaadf00d;
 
 std::vector<GpgpInstance> sorted(std::vector<GpgpInstance> all) {

@@ -67,13 +67,6 @@ Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
 
 Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCanvasCreateInfo& info) {
   auto canvas = core::makeUnique<Canvas>(context.host(), context, info);
-  constexpr uint32_t kBuffersOfPatches = 26; // two more than gpgp asks of every device
-  const uint32_t buffers = context.device.limits.maxPerStageDescriptorStorageBuffers;
-  if (canvas->sizes_.maxTilePatches && buffers < kBuffersOfPatches)
-    return makeError(GPGP_ERROR_UNSUPPORTED,
-                     "GPGP_CANVAS_PATCHES takes %u storage buffers a stage, but this device has %u "
-                     "(maxPerStageDescriptorStorageBuffers)",
-                     kBuffersOfPatches, buffers);
   const DrawShaders draw{{"draw.vert", vector_draw_vert},
                          {"draw.frag", vector_draw_frag},
                          {"draw.vert, multiview", vector_draw_vert_multiview},
