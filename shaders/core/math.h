@@ -4,6 +4,9 @@
 // root are correctly rounded (an estimate by the native operation, whatever its error, made exact by integers), sine
 // and cosine are fixed polynomials, and every result is settled: zero below 2^-100, at most 2^100, never NaN, never -0,
 // so that no denormal or infinity can arise from one more product or sum of settled values.
+//
+// Nothing here branches: these functions are inlined in hundreds of places, and what a driver's compiler takes grows
+// with the square of a shader's blocks, or faster. GLSL chooses without a branch where both values are variables.
 #ifndef GPGP_SHADERS_CORE_MATH_H
 #define GPGP_SHADERS_CORE_MATH_H
 #include "core/shared.h"
@@ -26,13 +29,10 @@ GPGP_CONST uint kSmallestBits = 0x0d800000u; // 2^-100
 /// x brought into the range in which all arithmetic here happens. NaN becomes 0.
 GPGP_FN float settle(float x) {
   const uint bits = floatBitsToUint(x);
-  const uint exponent = (bits >> 23) & 0xffu;
-  if (exponent < 27u) return 0.0f;
-  if (exponent > 226u) {
-    if (exponent == 255u && (bits & 0x7fffffu) != 0u) return 0.0f;
-    return uintBitsToFloat((bits & 0x80000000u) | kLargestBits);
-  }
-  return x;
+  const uint magnitude = bits & 0x7fffffffu;
+  const uint limited = (bits & 0x80000000u) | min(magnitude, kLargestBits);
+  // Below the smallest wraps around, NaN is above infinity.
+  return uintBitsToFloat(magnitude - kSmallestBits > 0x7f800000u - kSmallestBits ? 0u : limited);
 }
 
 GPGP_CONST float kLargest = 1.2676506e30f;   // 2^100
@@ -81,23 +81,20 @@ GPGP_FN float multiply(float a, float b) {
 /// A float from sign, unbiased exponent and a 25-bit root or quotient whose top bit is set, rounded to nearest even.
 GPGP_FN float assemble(uint sign, int exponent, uint digits, bool inexact) {
   uint mantissa = digits >> 1;
-  if ((digits & 1u) != 0u && (inexact || (mantissa & 1u) != 0u)) mantissa += 1u;
-  if (mantissa == 0x1000000u) {
-    mantissa = 0x800000u;
-    exponent += 1;
-  }
-  const int biased = exponent + 127;
-  if (biased < 27) return 0.0f;
-  if (biased > 226) return uintBitsToFloat(sign | kLargestBits);
-  return uintBitsToFloat(sign | (uint(biased) << 23) | (mantissa & 0x7fffffu));
+  mantissa += digits & (mantissa | uint(inexact)) & 1u;
+  const uint carry = mantissa >> 24; // then the mantissa is 2^24
+  mantissa >>= carry;
+  const int biased = exponent + 127 + int(carry);
+  const uint bits = sign | (uint(biased) << 23) | (mantissa & 0x7fffffu);
+  const uint largest = sign | kLargestBits;
+  const uint limited = biased > 226 ? largest : bits;
+  return uintBitsToFloat(biased < 27 ? 0u : limited);
 }
 
 /// a / b, correctly rounded. x / 0 has the largest magnitude and x's sign; 0 / 0 is 0.
 GPGP_FN float divide(float a, float b) {
   const uint ua = floatBitsToUint(settle(a));
   const uint ub = floatBitsToUint(settle(b));
-  if (ua == 0u) return 0.0f;
-  if (ub == 0u) return uintBitsToFloat((ua & 0x80000000u) | kLargestBits);
   const uint ma = (ua & 0x7fffffu) | 0x800000u;
   const uint mb = (ub & 0x7fffffu) | 0x800000u;
   const bool below = ma < mb;
@@ -109,40 +106,33 @@ GPGP_FN float divide(float a, float b) {
   const int correction = int(floor(float(remainder) / float(mb)));
   quotient += uint(correction);
   remainder -= correction * int(mb);
-  if (remainder < 0) {
-    quotient -= 1u;
-    remainder += int(mb);
-  } else if (remainder >= int(mb)) {
-    quotient += 1u;
-    remainder -= int(mb);
-  }
-  const int exponent = int((ua >> 23) & 0xffu) - int((ub >> 23) & 0xffu) - (below ? 1 : 0);
-  return assemble((ua ^ ub) & 0x80000000u, exponent, quotient, remainder != 0);
+  const int more = int(remainder >= int(mb)) - int(remainder < 0);
+  quotient += uint(more);
+  remainder -= more * int(mb);
+  const int exponent = int((ua >> 23) & 0xffu) - int((ub >> 23) & 0xffu) - int(below);
+  const uint sign = (ua ^ ub) & 0x80000000u;
+  const float largest = uintBitsToFloat(sign | kLargestBits);
+  const float finite = assemble(sign, exponent, quotient, remainder != 0);
+  const float ratio = ub == 0u ? largest : finite;
+  return ua == 0u ? 0.0f : ratio;
 }
 
 /// The square root, correctly rounded; 0 for negative values.
 GPGP_FN float squareRoot(float x) {
   const uint bits = floatBitsToUint(settle(x));
-  if (bits == 0u || (bits & 0x80000000u) != 0u) return 0.0f;
   int exponent = int(bits >> 23) - 127;
-  uint mantissa = (bits & 0x7fffffu) | 0x800000u;
-  if ((exponent & 1) != 0) {
-    mantissa <<= 1;
-    exponent -= 1;
-  }
+  const int odd = exponent & 1;
+  const uint mantissa = ((bits & 0x7fffffu) | 0x800000u) << uint(odd);
+  exponent -= odd;
   // root = floor(sqrt(mantissa * 2^25)) has 25 bits
   uint root = uint(sqrt(float(mantissa)) * 5792.6187514802f);
   int remainder = int((mantissa << 25) - root * root);
   root += uint(int(floor(float(remainder) / (2.0f * float(root)))));
   remainder = int((mantissa << 25) - root * root);
-  if (remainder < 0) {
-    root -= 1u;
-    remainder = int((mantissa << 25) - root * root);
-  } else if (remainder > int(2u * root)) {
-    root += 1u;
-    remainder = int((mantissa << 25) - root * root);
-  }
-  return assemble(0u, exponent / 2, root, remainder != 0);
+  root += uint(int(remainder > int(2u * root)) - int(remainder < 0));
+  remainder = int((mantissa << 25) - root * root);
+  const float positive = assemble(0u, exponent / 2, root, remainder != 0);
+  return int(bits) > 0 ? positive : 0.0f;
 }
 
 /// Sine and cosine of r in [-pi/4, pi/4] turned by whole quarters.
@@ -152,13 +142,10 @@ GPGP_FN vec2 quarterSineCosine(float r, int quarter) {
       r + r * (r2 * (-0.16666667f + r2 * (8.3333333e-3f + r2 * (-1.984127e-4f + r2 * 2.7557319e-6f))));
   GPGP_PRECISE float c =
       1.0f + r2 * (-0.5f + r2 * (4.1666667e-2f + r2 * (-1.3888889e-3f + r2 * (2.4801587e-5f - r2 * 2.755732e-7f))));
-  s = settle(s);
-  c = settle(c);
-  const int turns = quarter & 3;
-  if (turns == 0) return vec2(s, c);
-  if (turns == 1) return vec2(c, settle(-s));
-  if (turns == 2) return vec2(settle(-s), -c);
-  return vec2(-c, s);
+  const bool odd = (quarter & 1) != 0;
+  const float x = odd ? c : s, y = odd ? s : c;
+  const float minusX = -x, minusY = -y;
+  return vec2(settle((quarter & 2) != 0 ? minusX : x), settle(((quarter + 1) & 2) != 0 ? minusY : y));
 }
 
 /// (sine, cosine) of an angle in degrees; exact at multiples of 90.

@@ -234,7 +234,8 @@ void push(bool own, uint place, uint count, Shape s) {
 #include "spawn/colliders/context.glsl"
 #endif
 
-/// What the recording's camera sees of the shape.
+/// What the recording's camera sees of a shape. A grammar that asks for it calls this; look() is for what runs by the
+/// graph's words.
 Seen seenOf(Shape s) {
 #ifdef GPGP_COLLIDERS
   const uint axiom = axiomNumber(s.axiom) * 6;
@@ -245,12 +246,20 @@ Seen seenOf(Shape s) {
                 uintBitsToFloat(axioms[axiom + 2]));
 }
 
+void look(Shape s) {
+  const uint asks = graphWords[s.node + kNodeOperator] & kNodeSees;
+  for (uint i = 0; i < asks; i += kNodeSees) { // a loop: software devices skip nothing else
+    seen = seenOf(s);
+  }
+}
+
 // Families are in a generated kernel's table, everything else that multiplies in the graph's words.
 Fan fanFor(Shape s) {
 #ifdef GPGP_TABLE
   const uint family = familyOf(s.node);
   if (family != 0) return familyFan(s, family);
 #endif
+  look(s);
   return fanOf(s);
 }
 /// Returns a kEnd value.
@@ -259,6 +268,7 @@ uint toChildOf(inout Shape s, Fan fan, uint index) {
   const uint family = familyOf(s.node);
   if (family != 0) return toDescendant(s, family, fan, index, record.maxDepth);
 #endif
+  look(s);
   toChild(s, fan, index);
   return kEndGoesOn;
 }

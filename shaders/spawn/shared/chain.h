@@ -22,28 +22,35 @@ GPGP_SHADER_BEGIN
 
 /// The edge that a conditional or random operator takes.
 GPGP_FN uint chooseEdge(GPGP_GRAPH Shape s, uint op GPGP_SEEN_PARAMETER) {
-  const float first = parameter(GPGP_G s, 0u GPGP_SEEN_ARGUMENT);
-  if (op == kOpIf) return first != 0.0f ? 0u : 1u;
-  if (op == kOpIfSizeLess) return component(s.size, graphWords[s.node + kNodeArgument]) < first ? 0u : 1u;
-  const uint count = graphWords[s.node + kNodeEdgeCount];
+  // Values are worked out at one place: a GPU has all of evaluate() again wherever it is called. The first parameter,
+  // then the probabilities twice: for their sum, and for the one that the number falls into.
+  const uint count = op == kOpRandomRule ? graphWords[s.node + kNodeEdgeCount] : 0u;
+  float first = 0.0f;
   float total = 0.0f;
-  for (uint i = 0u; i < count; ++i) {
-    total = add(total, max(0.0f, parameter(GPGP_G s, i + 1u GPGP_SEEN_ARGUMENT)));
-  }
-  const float x = multiply(subtract(first, floor(first)), total);
+  float x = 0.0f;
   float sum = 0.0f;
   uint chosen = 0u;
-  for (uint i = 0u; i < count; ++i) {
-    const float p = max(0.0f, parameter(GPGP_G s, i + 1u GPGP_SEEN_ARGUMENT));
-    if (p > 0.0f && (sum <= x)) chosen = i;
-    sum = add(sum, p);
+  for (uint turn = 0u; turn <= 2u * count; ++turn) {
+    const uint index = turn > count ? turn - count : turn;
+    const float value = parameter(GPGP_G s, index GPGP_SEEN_ARGUMENT);
+    const float p = max(0.0f, value);
+    if (turn == 0u) {
+      first = value;
+    } else if (turn <= count) {
+      total = add(total, p);
+    } else {
+      if (turn == count + 1u) x = multiply(subtract(first, floor(first)), total);
+      if (p > 0.0f && sum <= x) chosen = index - 1u;
+      sum = add(sum, p);
+    }
   }
+  if (op == kOpIf) return first != 0.0f ? 0u : 1u;
+  if (op == kOpIfSizeLess) return component(s.size, graphWords[s.node + kNodeArgument]) < first ? 0u : 1u;
   return chosen;
 }
 
 /// One of the operators that pass on exactly one shape; its node stays.
 GPGP_FN void transform(GPGP_GRAPH GPGP_INOUT(Shape) s, uint op) {
-  // Values are worked out at one place: a GPU has all of evaluate() again wherever it is called.
   vec3 value = vec3(0.0f);
   const uint count = min(graphWords[s.node + kNodeParameterCount], 3u);
   for (uint i = 0u; i < count; ++i) {
@@ -78,6 +85,7 @@ GPGP_FN uint runWords(GPGP_GRAPH GPGP_INOUT(Shape) s, uint maxDepth) {
     const uint operatorWord = graphWords[s.node + kNodeOperator];
     const uint op = operatorWord & kOperatorMask;
     if (op == kOpTerminal) return kEndTerminal;
+    GPGP_LOOK(s);
     if (op <= kLastPassing) {
       const uint target = edgeTarget(GPGP_G s.node, 0u);
       transform(GPGP_G s, op);

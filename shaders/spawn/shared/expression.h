@@ -4,15 +4,18 @@
 #define GPGP_SHADERS_SPAWN_EXPRESSION_H
 #include "spawn/shared/view.h"
 
-// What the camera sees of the shape: in GLSL of the recording's, in C++ whoever calls says it where a parameter wants
-// it.
+// What the camera sees of the shape whose operator is being run. Whoever runs the operator works it out before, once
+// for all its parameters: in C++ it is passed on, in GLSL look() of derive/derive.glsl leaves it in a variable.
 #ifdef __cplusplus
 #define GPGP_SEEN_PARAMETER , Seen seen = seenFromNowhere()
 #define GPGP_SEEN_ARGUMENT , seen
+#define GPGP_LOOK(shape)
 #else
 #define GPGP_SEEN_PARAMETER
 #define GPGP_SEEN_ARGUMENT
-Seen seenOf(Shape s); // derive/derive.glsl
+#define GPGP_LOOK(shape) look(shape)
+Seen seen;
+void look(Shape s);
 #endif
 
 GPGP_SHADER_BEGIN
@@ -64,12 +67,6 @@ GPGP_FN float evaluate(GPGP_GRAPH Shape s, uint at, uint index GPGP_SEEN_PARAMET
   const uint value = graphWords[at + 1u];
   if (kind == kParameterConstant) return uintBitsToFloat(value);
   if (kind == kParameterAttribute) return attributeOf(s, value);
-#ifndef __cplusplus
-  Seen seen = seenFromNowhere();
-  for (uint i = kParameterProgram; i < kind; ++i) { // a loop: software devices skip nothing else
-    seen = seenOf(s);
-  }
-#endif
   float stack[kMaxStack];
   uint depth = 0u;
   uint draws = index << kDrawsOfParameter;

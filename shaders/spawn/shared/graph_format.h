@@ -21,7 +21,7 @@
 GPGP_SHADER_BEGIN
 
 GPGP_CONST uint kGraphMagic = 0x67707067u; // "gppg"
-GPGP_CONST uint kGraphVersion = 8u;
+GPGP_CONST uint kGraphVersion = 9u;
 
 // header words
 GPGP_CONST uint kHeaderMagic = 0u;
@@ -51,7 +51,7 @@ GPGP_CONST uint kSectionAxioms = 11u;
 GPGP_CONST uint kSectionCount = 12u;
 
 // node: eight words. What a terminal says lies in the first four, which are read at once.
-GPGP_CONST uint kNodeOperator = 0u; // and kNodeFilter, kNodeDraws, and its priority << kNodePriority
+GPGP_CONST uint kNodeOperator = 0u; // and kNodeFilter, kNodeDraws, kNodeSees, and its priority << kNodePriority
 GPGP_CONST uint kNodeArgument = 1u;
 GPGP_CONST uint kNodeArgument2 = 2u;
 GPGP_CONST uint kNodeParameters = 3u; // offset of the first; of a terminal: kNodeRule
@@ -67,6 +67,8 @@ GPGP_CONST uint kNoRule = 0xffffffffu;
 GPGP_CONST uint kNodeFilter = 0x100u;
 /// Of an operator that passes on one shape: a parameter draws a random number, so the shape's path key changes here.
 GPGP_CONST uint kNodeDraws = 0x200u;
+/// A parameter asks what the camera sees of the shape.
+GPGP_CONST uint kNodeSees = 0x400u;
 GPGP_CONST uint kNodePriority = 16u;
 GPGP_CONST uint kMaxPriority = 0xffffu;
 

@@ -28,7 +28,8 @@ GPGP_FN Seen seenFromNowhere() {
 /// 0, or from 2^-20 to 2^30: sums of products of two of these neither under- nor overflow, so that they need not be
 /// settled.
 GPGP_FN float nearbyLength(float settled) {
-  return abs(settled) < 9.5367432e-7f ? 0.0f : clamp(settled, -1.0737418e9f, 1.0737418e9f);
+  const float clamped = clamp(settled, -1.0737418e9f, 1.0737418e9f);
+  return abs(settled) < 9.5367432e-7f ? 0.0f : clamped;
 }
 GPGP_FN vec3 nearbyLengths(vec3 settled) {
   return vec3(nearbyLength(settled.x), nearbyLength(settled.y), nearbyLength(settled.z));

@@ -534,6 +534,7 @@ private:
     } else { // by the words; on software devices when it has waited, as they count loops
       add("  s.node = " + word(node, false, [&](const Node& peer) { return offsetOf(indexOf(peer)); }) +
           ";\n#ifdef GPGP_SOFTWARE\n  return kEndWaits;\n#endif\n");
+      if (node.sees) add("  look(s);\n");
       add("  const Division d = divisionOf(s, " + place + ");\n");
       there = "d.fan.count != 0u && toPart(s, " + number(node.argument) + ", d.fan.extent, d.part, " + place + ")";
     }

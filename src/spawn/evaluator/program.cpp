@@ -141,8 +141,7 @@ Program decode(const uint32_t* words, std::pmr::memory_resource* memory) {
     for (uint32_t shape = 0; step.op == kOpSubDiv && shape < kShapeCount; ++shape)
       step.cuts = step.cuts || ((node[kNodeShapes] >> shape & 1) && isCut(shape, step.argument));
     step.parameters = node[kNodeParameters];
-    for (uint32_t i = 0; i < node[kNodeParameterCount]; ++i)
-      step.sees = step.sees || words[step.parameters + i * kParameterSize] == kParameterView;
+    step.sees = node[kNodeOperator] & kNodeSees;
     step.wayCount = node[kNodeEdgeCount];
     step.ways = program.ways.data() + program.ways.size();
     for (uint32_t e = 0; e < step.wayCount; ++e) {

@@ -197,9 +197,12 @@ void analyse(Graph& graph) {
       if (edge.target != kNoNode) kept += many ? 2 : 1;
     }
     node.filter = couldMultiply(node.op) && kept <= 1;
-    node.draws = false;
-    for (uint32_t i = 0; !couldMultiply(node.op) && i < node.parameterCount; ++i)
-      node.draws = node.draws || drawsOf(graph, graph.parameters[node.firstParameter + i]) > 0;
+    node.draws = node.sees = false;
+    for (uint32_t i = 0; i < node.parameterCount; ++i) {
+      const Parameter& parameter = graph.parameters[node.firstParameter + i];
+      node.draws |= !couldMultiply(node.op) && drawsOf(graph, parameter) > 0;
+      node.sees |= parameter.kind == kParameterView;
+    }
   }
   ShapeFlow fromAxioms(graph, &Node::axiomShapes), all(graph, &Node::shapes);
   for (const Axiom& axiom : graph.axioms) {

@@ -65,11 +65,11 @@ std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resour
   words[kHeaderPhases] = graph.phases;
   words[kHeaderPieces] = graph.pieces;
   for (const Node& n : graph.nodes)
-    words.insert(words.end(),
-                 {n.op | (n.filter ? kNodeFilter : 0u) | (n.draws ? kNodeDraws : 0u) | n.priority << kNodePriority,
-                  n.argument, n.division == UINT32_MAX ? n.argument2 : at(kSectionDivisions, n.division),
-                  n.op == kOpTerminal ? n.rule : at(kSectionParameters, n.firstParameter), n.parameterCount,
-                  at(kSectionEdges, n.firstEdge), n.edgeCount, n.shapes});
+    words.insert(words.end(), {n.op | (n.filter ? kNodeFilter : 0u) | (n.draws ? kNodeDraws : 0u) |
+                                   (n.sees ? kNodeSees : 0u) | n.priority << kNodePriority,
+                               n.argument, n.division == UINT32_MAX ? n.argument2 : at(kSectionDivisions, n.division),
+                               n.op == kOpTerminal ? n.rule : at(kSectionParameters, n.firstParameter),
+                               n.parameterCount, at(kSectionEdges, n.firstEdge), n.edgeCount, n.shapes});
   for (const Edge& e : graph.edges)
     words.insert(words.end(), {nodeAt(e.target) | (e.recursive ? kEdgeRecursive : 0u), e.multiplicity, e.shapes});
   for (const Parameter& p : graph.parameters)

@@ -39,6 +39,7 @@ struct Node {
   bool cuts = false;               ///< SubDiv by constant weights alone: cuts polygons
   bool uncut = false;              ///< one that can arrive it cannot cut; such shapes are dropped and counted
   bool draws = false;              ///< passes on one shape, and a parameter draws a random number
+  bool sees = false;               ///< a parameter asks what the camera sees of the shape
   uint32_t priority = 0;           ///< of its rule, at most kMaxPriority: see dependenciesOf()
   uint32_t rule = shader::kNoRule; ///< of a terminal: in whose body it stands
 };

@@ -25,10 +25,10 @@ uint32_t longestChain(const Graph& graph) {
   return *std::max_element(before.begin(), before.end()) + 1;
 }
 
-/// Of a program's codes, and of the loop before them, which has a turn where the camera is asked.
+/// Of a program's codes.
 uint32_t lengthOf(const Graph& graph, const Parameter& parameter) {
   if (!hasProgram(parameter.kind)) return 0;
-  uint32_t codes = parameter.kind - kParameterProgram + 1;
+  uint32_t codes = 0;
   for (uint32_t at = parameter.value; graph.code[at] != kCodeEnd; ++at, ++codes)
     if (graph.code[at] == kCodeNumber) ++at;
   return std::min(codes, kDeviceTurns); // more is as bad
@@ -81,19 +81,24 @@ private:
 Turns turnsOf(const Graph& graph) {
   // A loop of the shaders takes as many turns as the worst operator that runs it; invocations with other operators run
   // other loops meanwhile, so that those add up.
-  LoopOfExpressions transform, weights, parts; // loops of transform(), chooseEdge() and divisionOf()
-  uint32_t chosenBy = 0, repeatedBy = 0, edges = 1, cut = 0;
+  LoopOfExpressions transform, choice, parts; // loops of transform(), chooseEdge() and divisionOf()
+  uint32_t repeatedBy = 0, edges = 1, cut = 0;
+  bool sees = false;
   bool rotates = false, keepsPart = false, keepsPiece = false; // of operators that kernels have code with loops for
   for (const Node& node : graph.nodes) {
     const auto codes = [&](uint32_t i) {
       return i < node.parameterCount ? lengthOf(graph, graph.parameters[node.firstParameter + i]) : 0;
     };
+    sees |= node.sees;
     if (kOperators[node.op].relation == Relation::Passing) {
       for (uint32_t i = 0; i < std::min(node.parameterCount, 3u); ++i) transform.add(i, codes(i));
       rotates |= node.op == kOpRotate;
     } else if (chooses(node.op)) {
-      chosenBy = std::max(chosenBy, codes(0));
-      for (uint32_t e = 0; node.op == kOpRandomRule && e < node.edgeCount; ++e) weights.add(e, codes(e + 1));
+      choice.add(0, codes(0));
+      for (uint32_t e = 1; node.op == kOpRandomRule && e <= node.edgeCount; ++e) {
+        choice.add(e, codes(e));
+        choice.add(node.edgeCount + e, codes(e));
+      }
     } else if (couldMultiply(node.op)) {
       edges = std::max(edges, node.edgeCount);
       cut = std::max(cut, cutsOf(graph, node));
@@ -104,12 +109,12 @@ Turns turnsOf(const Graph& graph) {
         for (uint32_t e = 0; e < node.edgeCount; ++e) parts.add(e, codes(e));
     }
   }
-  const uint32_t division = parts.turns();
+  const uint32_t division = parts.turns(), look = loop(sees);
   Turns turns;
-  turns.fan = division + 2 * loop(repeatedBy) + loop(edges) + loop(cut); // fanOf() and familyFan()
-  turns.child = 2 * loop(edges) + division + loop(cut);                  // toChild()
-  turns.family = loop(kFamilySteps);                                     // toDescendant()
-  turns.passed = 1 + transform.turns() + loop(3) + loop(chosenBy) + 2 * weights.turns() + turns.fan + turns.child;
+  turns.fan = look + division + 2 * loop(repeatedBy) + loop(edges) + loop(cut); // fanOf() and familyFan()
+  turns.child = look + 2 * loop(edges) + division + loop(cut);                  // toChild()
+  turns.family = loop(kFamilySteps);                                            // toDescendant()
+  turns.passed = 1 + transform.turns() + loop(3) + choice.turns() + turns.fan + turns.child;
   turns.code = (rotates ? kRoom * loop(3) : 0) + (keepsPart ? kRoom / kDivisionRoom * division : 0) +
                (keepsPiece ? kRoom / kCutRoom * loop(cut) : 0);
   turns.chain = longestChain(graph);
