@@ -234,8 +234,8 @@ void push(bool own, uint place, uint count, Shape s) {
 #include "spawn/colliders/context.glsl"
 #endif
 
-/// What the recording's camera sees of a shape. A grammar that asks for it calls this; look() is for what runs by the
-/// graph's words.
+/// What the recording's camera sees of a shape. Kernels' own code calls it where a value is wanted; look() is for what
+/// runs by the graph's words.
 Seen seenOf(Shape s) {
 #ifdef GPGP_COLLIDERS
   const uint axiom = axiomNumber(s.axiom) * 6;

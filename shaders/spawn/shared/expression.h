@@ -15,6 +15,7 @@
 #define GPGP_SEEN_ARGUMENT
 #define GPGP_LOOK(shape) look(shape)
 Seen seen;
+Seen seenOf(Shape s);
 void look(Shape s);
 #endif
 
