@@ -310,7 +310,7 @@ TEST_F(SpawnTest, RandomGrammarsEqualTheEvaluator) {
   makeSpawner({.maxColliders = 8192});
   uint32_t instances = 0;
   const uint32_t count = numberFrom("GPGP_TEST_GRAMMARS", 200); // more for a long run, which may begin later
-  const uint32_t least = count < 200 ? 0 : 100 * count; // instances: of few grammars, all can be small
+  const uint32_t least = count < 200 ? 0 : 100 * count;         // instances: of few grammars, all can be small
   for (uint32_t seed = numberFrom("GPGP_TEST_FIRST", 0), checked = 0; checked < count || instances < least;
        ++seed, ++checked) {
     ASSERT_LT(checked, 2 * count) << instances << " instances";
