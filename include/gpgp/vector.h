@@ -522,7 +522,13 @@ typedef struct GpgpCanvasHistoryCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
   const char* label;
-  uint32_t width, height; /**< pixels, 1 to 16384 each; a pixel takes 8 bytes of device memory */
+  /** Pixels, 1 to 16384 each; a pixel takes 8 bytes of device memory. Both may be 0 where maxKept is not: such a
+   *  history holds no picture. It remembers what a target shows. */
+  uint32_t width, height;
+  /** What the history can remember of a recording, for GpgpCanvasInfo::keep: each drawing, glyph, shape and clip that
+   *  the canvas shows is one thing; at most 4194304. A thing takes some 60 bytes of host memory. 0: nothing is
+   *  remembered. */
+  uint32_t maxKept;
 } GpgpCanvasHistoryCreateInfo;
 #define GPGP_CANVAS_HISTORY_CREATE_INFO_INIT                                                                           \
   GPGP_INIT(GpgpCanvasHistoryCreateInfo, GPGP_STRUCTURE_CANVAS_HISTORY_CREATE_INFO)
@@ -623,6 +629,9 @@ typedef struct GpgpCanvasImage {
   GpgpImageEncoding encoding;
   /** NEAREST: each pixel takes what the sampler returns. The sampler's own filters must then be NEAREST as well. */
   GpgpImageFilter filter;
+  /** For GpgpCanvasInfo::keep: a number that changes whenever the contents of the image change, or the view or sampler
+   *  is another one behind an equal handle. */
+  uint64_t version;
 } GpgpCanvasImage;
 
 typedef struct GpgpCanvasInfo {
@@ -648,6 +657,15 @@ typedef struct GpgpCanvasInfo {
   VkBool32 blendSrgb;            /**< VK_TRUE: colours are mixed as sRGB encodes them, as SVG renderers do. */
   const GpgpCanvasImage* images; /**< the images that items paint with */
   uint32_t imageCount;           /**< at most GpgpCanvasCreateInfo::maxImages */
+  /** VK_TRUE: only tiles of 8 x 8 pixels in which something changed are drawn again. The history, made with maxKept,
+   *  remembers the last recording with it. Where nothing changed, nothing is drawn. The picture is that of a recording
+   *  without this flag, bit for bit.
+   *
+   *  The engine promises that the last recording with this history is executed before this one, and that the target,
+   *  if there is one, still holds what that recording left: target.before.layout is not UNDEFINED, and each target has
+   *  a history of its own. GpgpCanvasImage::version says when an image changed. What the canvas can see itself (another
+   *  size, target, setting or canvas, budgets that were exceeded) makes it draw everything; the report says why. */
+  VkBool32 keep;
 } GpgpCanvasInfo;
 #define GPGP_CANVAS_INFO_INIT GPGP_INIT(GpgpCanvasInfo, GPGP_STRUCTURE_CANVAS_INFO)
 
@@ -690,7 +708,27 @@ typedef struct GpgpCanvasDrawInfo {
 GPGP_API GpgpResult GPGP_CALL gpgpRecordDrawCanvas(GpgpRecorder canvas, VkCommandBuffer commandBuffer,
                                                    const GpgpFrame* frame, const GpgpCanvasDrawInfo* info);
 
-/** What a recording of a canvas needed, beside the budgets that it was given. */
+/** Why a recording drew all tiles. */
+typedef int32_t GpgpCanvasRedraw;
+enum {
+  GPGP_CANVAS_REDRAW_NONE = 0,      /**< it did not: only tiles in which something changed were drawn */
+  GPGP_CANVAS_REDRAW_NOT_ASKED = 1, /**< GpgpCanvasInfo::keep is VK_FALSE */
+  GPGP_CANVAS_REDRAW_FIRST = 2,     /**< the history remembers nothing */
+  /** Size, samples, background, encodings, the target or its layout, or the canvas are not those of the last recording
+   *  with the history. */
+  GPGP_CANVAS_REDRAW_SETTINGS = 3,
+  GPGP_CANVAS_REDRAW_ROOM = 4, /**< more things than maxKept */
+  /** A budget was exceeded, in this recording or, as its report says, in one since all tiles were last drawn; or such a
+   *  recording was not executed. */
+  GPGP_CANVAS_REDRAW_INCOMPLETE = 5,
+  /** Other shaders paint the canvas: its first gradient, image, projective item or group came, or the last one went. */
+  GPGP_CANVAS_REDRAW_SHADERS = 6,
+  GPGP_CANVAS_REDRAW_LAYERS = 7, /**< something changed, and there are layers (layers.h) */
+  GPGP_CANVAS_REDRAW_MOST = 8    /**< more than half of the tiles changed */
+};
+
+/** What a recording of a canvas needed, beside the budgets that it was given. With GPGP_CANVAS_REDRAW_NONE that is only
+ *  what the tiles needed that were drawn. */
 typedef struct GpgpCanvasReport {
   GpgpStructureType sType;
   void* pNext;
@@ -718,6 +756,9 @@ typedef struct GpgpCanvasReport {
   uint32_t tilePatchesGiven;     /**< maxTilePatches; 0 with GPGP_CANVAS_FLATTENED */
   uint32_t imagePixels;          /**< needed by recordings of more than 8 images; 0 by others */
   uint32_t imagePixelsGiven;     /**< maxImagePixels; 0 where maxImages is at most 8 */
+  uint32_t tiles;                /**< of 8 x 8 pixels, that the canvas has */
+  uint32_t tilesDrawn;           /**< fewer only with GpgpCanvasInfo::keep */
+  GpgpCanvasRedraw redraw;       /**< why all of them were drawn */
 } GpgpCanvasReport;
 #define GPGP_CANVAS_REPORT_INIT GPGP_INIT(GpgpCanvasReport, GPGP_STRUCTURE_CANVAS_REPORT)
 

@@ -60,6 +60,7 @@ void Hud::resize(VkExtent2D extent) {
   info.label = "hud";
   info.width = extent.width;
   info.height = extent.height;
+  info.maxKept = 64; // more than its drawings: where they stay as they are, nothing is rasterised again
   view_ = gpgp_.take(gpgp::CanvasHistory::create(gpgp_.context, info), "gpgpCreateCanvasHistory");
   prepared_ = false;
 }
@@ -88,6 +89,7 @@ void Hud::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
   info.items = items.data();
   info.itemCount = static_cast<uint32_t>(items.size());
   info.history = view_;
+  info.keep = VK_TRUE;
   if (gpgp_.check(canvas_.recordPrepare(commands, frame, info), "gpgpRecordPrepareCanvas") == GPGP_SUCCESS)
     prepared_ = true;
 }
@@ -108,7 +110,7 @@ void Hud::draw(VkCommandBuffer commands, const GpgpFrame& frame) {
 
 void Hud::collect() {
   for (auto next = canvas_.report(); next; next = canvas_.report()) {
-    report_ = *next;
+    if (next->tilesDrawn || reports_ == 0) report_ = *next; // else nothing was to be done
     ++reports_;
   }
 }

@@ -223,9 +223,12 @@ GpgpResult GPGP_CALL gpgpCreateCanvasHistory(GpgpContext handle, const GpgpCanva
     if (!context) return context.error();
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_CANVAS_HISTORY_CREATE_INFO, "info"); !ok) return ok;
     if (!history) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "history is NULL");
-    if (info->width == 0 || info->height == 0 || info->width > 16384 || info->height > 16384)
+    const bool pictured = info->width || info->height || info->maxKept == 0;
+    if (pictured && (info->width == 0 || info->height == 0 || info->width > 16384 || info->height > 16384))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "width x height is %u x %u; expected 1 x 1 to 16384 x 16384",
                        info->width, info->height);
+    if (info->maxKept > 1u << 22)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxKept is %u; at most 4194304", info->maxKept);
     const uint64_t bytes = uint64_t(info->width) * info->height * 8;
     if (bytes > (*context)->device.limits.maxStorageBufferRange)
       return makeError(GPGP_ERROR_UNSUPPORTED, "%u x %u pixels need %llu bytes, but this device binds at most %u",

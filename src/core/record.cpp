@@ -185,7 +185,7 @@ Result<uint32_t> Recorder::acquire() const {
 }
 
 void Recorder::take(uint32_t slot, uint64_t tag, bool report) {
-  slots_[slot] = {context.current(), tag, nextMarker_, report};
+  slots_[slot] = {context.current(), tag, nextMarker_, report, report, {}};
   if (++nextMarker_ == 0) nextMarker_ = 1;
 }
 
@@ -306,6 +306,40 @@ void recordFillBarrier(const Device& device, VkCommandBuffer commandBuffer, cons
                                0, nullptr);
 }
 
+/// What stands in place of a recording that has nothing to do: that it ran, and where the engine's images go.
+void Recorder::recordNothing(const Record& record, uint32_t slot) const {
+  const DeviceTable& vk = context.device.vk;
+  const VkCommandBuffer cmd = record.commandBuffer;
+  const bool engine = !(record.info->accessMode & GPGP_ACCESS_EXTERNAL_BARRIERS);
+  beginLabel(cmd, nullptr);
+  vk.CmdFillBuffer(cmd, reports_.handle(), slot * reportStride_ + passes_.reportBytes, 4, slots_[slot].marker);
+  VkPipelineStageFlags from = VK_PIPELINE_STAGE_TRANSFER_BIT, to = VK_PIPELINE_STAGE_HOST_BIT;
+  std::array<VkImageMemoryBarrier, 4> images;
+  uint32_t imageCount = 0;
+  for (size_t i = 0; engine && i < passes_.resources.size(); ++i) {
+    const GpgpImage* image = record.bindings[i].image;
+    if (!image || !image->view || imageCount == images.size()) continue;
+    from |= stages32(image->before.stages);
+    to |= stages32(image->after.stages);
+    VkImageMemoryBarrier& barrier = images[imageCount++];
+    barrier = {VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
+    barrier.srcAccessMask = access32(image->before);
+    barrier.dstAccessMask = access32(image->after);
+    barrier.oldLayout = image->before.layout;
+    barrier.newLayout = image->after.stages ? image->after.layout : VK_IMAGE_LAYOUT_GENERAL; // as all passes leave it
+    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image->image;
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, image->mipLevel, 1, image->arrayLayer, 1};
+  }
+  const VkMemoryBarrier memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_TRANSFER_WRITE_BIT,
+                               VK_ACCESS_HOST_READ_BIT};
+  vk.CmdPipelineBarrier(cmd, from, to, 0, 1, &memory, 0, nullptr, imageCount, images.data());
+  const GpgpTimestamps& timestamps = record.info->timestamps;
+  for (uint32_t i = 0; timestamps.queryPool && i <= passes_.passes.size(); ++i)
+    vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps.queryPool, timestamps.firstQuery + i);
+  endLabel(cmd);
+}
+
 std::byte* Recorder::constants() const {
   const auto slot = acquire();
   return slot ? reinterpret_cast<std::byte*>(constants_.mapped()) + *slot * passes_.constantsBytes : nullptr;
@@ -317,6 +351,8 @@ Result<void> Recorder::record(const Record& record) {
   const uint32_t slot = *acquired;
   std::byte* to = constants();
   take(slot, record.info->tag, true);
+  slots_[slot].counts = !record.nothing;
+  slots_[slot].note = record.note;
 
   const DeviceTable& vk = context.device.vk;
   const VkCommandBuffer cmd = record.commandBuffer;
@@ -324,6 +360,11 @@ Result<void> Recorder::record(const Record& record) {
   const VkDeviceSize scratchOffset = engineScratch_ ? record.info->scratch.offset : 0;
   char* report = reports_.mapped() + slot * reportStride_;
   std::memset(report + passes_.reportBytes, 0, 4);
+  if (record.nothing) {
+    std::fill(ran_.begin(), ran_.end(), uint8_t(0));
+    recordNothing(record, slot);
+    return {};
+  }
   for (const std::span<const std::byte> part : record.constants) {
     if (!part.empty() && part.data() != to) std::memcpy(to, part.data(), part.size());
     to += part.size();

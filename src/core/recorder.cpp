@@ -411,11 +411,13 @@ void Recorder::advance() {
       }
       const size_t place = (queueHead_ + queueCount_++) % queue_.size();
       uint32_t* copy = harvested_.data() + place * words;
-      if (ran)
+      if (ran && oldest->counts)
         std::memcpy(copy, data, passes_.reportBytes);
       else
         std::fill_n(copy, words, 0u);
-      queue_[place] = {{ran ? GPGP_SUCCESS : GPGP_NOT_EXECUTED, oldest->tag, oldest->frame}, {copy, words}};
+      queue_[place] = {
+          {ran ? GPGP_SUCCESS : GPGP_NOT_EXECUTED, oldest->tag, oldest->frame}, {copy, words}, oldest->note};
+      harvested(queue_[place]);
     }
     *oldest = {};
   }

@@ -42,7 +42,7 @@ struct Record {
   std::array<std::array<uint32_t, 3>, kMaxGroupCounts> groups = {};
   std::array<bool, kMaxConditions> conditions = {};
   uint32_t levels = UINT32_MAX;                              ///< passes of this level and above are left out
-  std::array<std::span<const std::byte>, 10> constants = {}; ///< for the first constants resource, in a row
+  std::array<std::span<const std::byte>, 11> constants = {}; ///< for the first constants resource, in a row
   uint32_t replacedShader = UINT32_MAX; ///< passes with this shader run another pipeline of the same layout
   VkPipeline replacement = VK_NULL_HANDLE;
   std::span<const Step> steps; ///< in order, each behind a barrier; recorded where the first stepped pass lies
@@ -51,6 +51,10 @@ struct Record {
   std::span<const VkDescriptorImageInfo> pages;
   std::span<const uint32_t> pageConstants; ///< one a page
   bool reports = false; ///< its passes write the whole report to the resource of that kind: nothing is copied
+  /// Nothing is to be done: no pass is recorded, images go from the engine's state before to the one after, and the
+  /// report's words are 0.
+  bool nothing = false;
+  std::array<uint32_t, 4> note = {}; ///< returned with the report
 };
 
 struct DrawRecord {
@@ -66,6 +70,7 @@ struct DrawRecord {
 struct RawReport {
   GpgpReportHeader header{}; ///< status SUCCESS or NOT_EXECUTED
   std::span<const uint32_t> words;
+  std::array<uint32_t, 4> note = {}; ///< Record::note
 };
 
 /// Whether a pipeline made for one target can draw into the other.
@@ -119,6 +124,8 @@ public:
   Recorder* nextRecorder() const { return nextRecorder_; }
 
 protected:
+  /// A report has come, which takeReport() will return unless too many others follow. (context)
+  virtual void harvested(const RawReport&) {}
   /// Where the next recording's constants will lie, for parts of Record::constants to be written in place: those are
   /// not copied. Memory that is slow to read. Null where record() has no room.
   std::byte* constants() const;
@@ -140,8 +147,9 @@ private:
   struct InFlight { // one recording in flight
     uint64_t frame = 0;
     uint64_t tag = 0;
-    uint32_t marker = 0; ///< what the GPU will have written; 0: free
-    bool report = false;
+    uint32_t marker = 0;                 ///< what the GPU will have written; 0: free
+    bool report = false, counts = false; ///< counts: the report has words
+    std::array<uint32_t, 4> note = {};
   };
   struct Target {
     GpgpTargetInfo info;
@@ -150,6 +158,7 @@ private:
 
   Result<uint32_t> acquire() const;
   void take(uint32_t slot, uint64_t tag, bool report);
+  void recordNothing(const Record& record, uint32_t slot) const;
   void writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
                         VkDeviceSize scratchOffset, bool reports) const;
   Result<VkPipeline> createDrawPipeline(const DrawShaders& draw, const GpgpTargetInfo& target) const;

@@ -106,6 +106,56 @@ struct Attachment {
   std::vector<uint8_t> bytes() const { return host::downloadImage(device, image, VK_IMAGE_LAYOUT_GENERAL); }
 };
 
+/// Histories whose recordings keep what did not change, and others, show the same inside the engine's pass.
+TEST_F(CanvasTest, KeptViewsAreThoseOfWholeRecordings) {
+  const Attachment one(device, VK_FORMAT_R16G16B16A16_SFLOAT, 64, 48), other(device, one.target.colorFormat, 64, 48);
+  canvasTargets = GPGP_CANVAS_TARGET_HISTORY;
+  makeCanvas(64, 0, 0, &one.target);
+  GpgpCanvasHistoryCreateInfo info = GPGP_CANVAS_HISTORY_CREATE_INFO_INIT;
+  info.width = 64;
+  info.height = 48;
+  info.maxKept = 8;
+  GpgpHistory kept = nullptr;
+  ASSERT_EQ(gpgpCreateCanvasHistory(context, &info, &kept), GPGP_SUCCESS) << lastMessage();
+  const GpgpHistory whole = makeView(64, 48);
+  TestPath shape = randomShape(5, 12), ground = randomShape(7, 60);
+  shape.color = {1, 0.5f, 0, 0.7f};
+  ground.color = {0, 0.5f, 1, 1};
+  const GpgpAsset moving = makeDrawing({shape.view()}), still = makeDrawing({ground.view()});
+  for (uint32_t k = 0; k < 8; ++k) { // every second frame is that before
+    const GpgpFrame frame = advance();
+    device.submitAndWait([&](VkCommandBuffer commands) {
+      ASSERT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
+      const std::vector<GpgpCanvasItem> items = {place(still), place(moving, 1, 5.0f * static_cast<float>(k / 2), 20)};
+      GpgpCanvasInfo record = infoOf(items, 64, 48);
+      record.history = whole;
+      ASSERT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &record), GPGP_SUCCESS) << lastMessage();
+      record.history = kept;
+      record.keep = VK_TRUE;
+      ASSERT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &record), GPGP_SUCCESS) << lastMessage();
+      for (const bool first : {true, false}) {
+        const Attachment& into = first ? one : other;
+        GpgpCanvasDrawInfo draw = into.drawAll(first ? kept : whole);
+        draw.target = &one.target; // the passes are compatible
+        into.render(commands, {}, [&] {
+          ASSERT_EQ(gpgpRecordDrawCanvas(canvas, commands, &frame, &draw), GPGP_SUCCESS) << lastMessage();
+        });
+      }
+    });
+    advance();
+    GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+    ASSERT_EQ(gpgpGetCanvasReport(canvas, &report), GPGP_SUCCESS);
+    ASSERT_EQ(gpgpGetCanvasReport(canvas, &report), GPGP_SUCCESS);
+    if (k % 2)
+      EXPECT_EQ(report.tilesDrawn, 0u) << k;
+    else if (k)
+      EXPECT_TRUE(report.tilesDrawn > 0 && report.tilesDrawn < report.tiles / 2) << k << ": " << report.tilesDrawn;
+    EXPECT_EQ(one.bytes(), other.bytes()) << k;
+  }
+  for (const GpgpHistory history : {kept, whole}) gpgpDestroyHistory(history);
+  for (const GpgpAsset drawing : {moving, still}) gpgpDestroyAsset(drawing);
+}
+
 TEST_F(CanvasTest, DrawsTheViewInsideARenderPass) {
   const Attachment attachment(device, VK_FORMAT_R8G8B8A8_UNORM, 64, 48);
   canvasTargets = GPGP_CANVAS_TARGET_HISTORY;

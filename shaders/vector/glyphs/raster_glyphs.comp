@@ -18,6 +18,7 @@ shared uint foremost[2], open[2]; // of the path at hand and the next one, in tu
 void main() {
   const uint lane = gl_LocalInvocationIndex;
   const uvec2 inTile = uvec2(lane % kTileSize, lane / kTileSize), tile = gl_WorkGroupID.xy;
+  if (!damaged(tile)) return;
   const uvec2 pixel = tile * kTileSize + inTile;
   const uint which = tile.y * header.tilesX + tile.x, list = (kFirstBin + which * kTileListWords) / 2;
   const uint total = binPairs[list].x;

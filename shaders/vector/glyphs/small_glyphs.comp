@@ -124,7 +124,7 @@ void main() {
   const ItemRecord item = placed(items[sourceIndex(placement)], placement);
   const Place place = placeOf(g, item);
   const uvec4 box = place.tiles;
-  if (box.x >= box.z) return;
+  if (box.x >= box.z || !damagedBox(box)) return;
   const vec4 ink = fetch(item.slot, item.paths + 1);
   const bool foreground = (floatBitsToUint(fetch(item.slot, item.paths + 2)).w & kForeground) != 0;
   const float alpha = ink.a * item.color.a;

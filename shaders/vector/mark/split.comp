@@ -54,7 +54,7 @@ void main() {
     for (uint rest = bins[bits + word]; rest != 0; rest &= rest - 1) look(word * 32 + findLSB(rest), tile, k);
   barrier();
   if (own != 0 || !inside) return;
-  const bool general = rich[k] > opaque[k];
+  const bool general = rich[k] > opaque[k] && damaged(tile);
   bins[place] = general ? kRich : kEven;
   if (general) bins[richTiles() + another(kRichArguments)] = tile.y * header.tilesX + tile.x;
 }

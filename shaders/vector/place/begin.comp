@@ -24,11 +24,18 @@ layout(set = 0, binding = kBindCounters, std430) buffer Counters { uvec4 counter
 #endif
 #endif
 
+void copyDamage(CanvasHeader header, uint lane, uint lanes) {
+  const uint tables = header.sourceCount * 10 + header.itemCount * 3 + header.shapeTables;
+  const uint count = header.damage == 0 ? 0 : (header.tilesX + 31) / 32 * header.tilesY;
+  for (uint i = lane; i < count; i += lanes) bins[header.damage + i] = floatBitsToUint(from[tables + i / 4][i % 4]);
+}
+
 void main() {
   const uint lane = gl_GlobalInvocationID.x, lanes = gl_NumWorkGroups.x * 64;
   const CanvasHeader header = hostHeader;
   if (lane == 0) copied = header;
   if (lane < kSlots) copiedSlots[lane] = hostSlots[lane];
+  copyDamage(header, lane, lanes);
 #if ALONE
   if (lane == 0)
     counters = CanvasCounters(0, 0, header.pathCount, header.pathsDropped, header.wordLimit, header.entryLimit, 0, 0,

@@ -83,7 +83,8 @@ void main() {
     }
     const uint paint = rest.x;
     PlacedPath p;
-    const uvec4 tiles = tileBox(item, box, frame, canvasTiles());
+    uvec4 tiles = tileBox(item, box, frame, canvasTiles());
+    if (!damagedBox(tiles)) tiles = uvec4(0);
     p.left = tiles.x;
     p.top = tiles.y;
     p.right = tiles.z;

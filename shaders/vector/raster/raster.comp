@@ -59,6 +59,7 @@ void main() {
 #endif
 #else
   const uvec2 tile = gl_WorkGroupID.xy;
+  if (!damaged(tile)) return;
 #if SPLIT
   const bool split = (header.flags & kSplitRich) != 0;
   if (split && bins[tileKinds() + tile.y * header.tilesX + tile.x] == kRich) return;

@@ -169,6 +169,29 @@ uint binOf(uvec2 tile) { return (tile.y >> header.binShift) * header.binsX + (ti
 uint clipRecord(uint clip) { return slots[0].clips + clip - 1; } // its vec4
 vec2 canvasTiles() { return vec2(header.tilesX, header.tilesY); }
 
+// Whether a tile is drawn: others keep what a recording before has left. A bit for each, by rows of whole words.
+uint damageInRow() { return (header.tilesX + 31) / 32; }
+bool damaged(uvec2 tile) {
+  return header.damage == 0 ||
+         (bins[header.damage + tile.y * damageInRow() + tile.x / 32] >> (tile.x & 31) & 1) != 0;
+}
+const uint kManyDamageWords = 1024;
+// Whether one of a box of tiles is drawn, or the box is large; left, top, right, bottom, exclusive.
+bool damagedBox(uvec4 box) {
+  if (header.damage == 0) return true;
+  if (box.x >= box.z || box.y >= box.w) return false;
+  const uint first = box.x / 32, last = (box.z - 1) / 32;
+  if ((last - first + 1) * (box.w - box.y) > kManyDamageWords) return true;
+  for (uint row = box.y; row < box.w; ++row)
+    for (uint word = first; word <= last; ++word) {
+      uint bits = bins[header.damage + row * damageInRow() + word];
+      if (word == first) bits &= ~0u << (box.x & 31);
+      if (word == last) bits &= ~0u >> (31 - (box.z - 1 & 31));
+      if (bits != 0) return true;
+    }
+  return false;
+}
+
 // What a path does to a tile: 0 nothing, 1 it covers all, 2 + entry * 4 + inside: it has edges there.
 uint coverageOf(PlacedPath p, uvec2 tile) {
   if (tile.x < p.left || tile.x >= p.right || tile.y < p.top || tile.y >= p.bottom) return 0;

@@ -204,7 +204,8 @@ struct CanvasHeader {
   uint assets;                       // where the SlotRecords begin, in vec4
   uint patchTable;                   // where the PatchTableRecord lies, in vec4; 0: patches draw no item
   uint imageTiles;                   // room for as many of StoredImages; 0: the recording has at most a page of images
-  uint pad0, pad1, pad2;
+  uint damage;                       // where in the bins it says which tiles are drawn (damaged()); 0: all are
+  uint pad0, pad1;
   vec4 background;
 };
 

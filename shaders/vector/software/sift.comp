@@ -40,7 +40,9 @@ void main() {
   const uint lists = listOf(firstTile), listWords = header.listWords, bits = bitsOf(bin);
   for (uint t = 0; t < width; ++t) bins[lists + t * listWords] = 0;
   const uint cutPath = counters.cutPath, room = listRoom();
-  uint open = (1u << width) - 1, full = 0, painted = 0, soft = 0, rich = 0, steps = 0;
+  uint drawn = 0;
+  for (uint t = 0; t < width; ++t) drawn |= damaged(uvec2(left + t, tileY)) ? 1u << t : 0;
+  uint open = drawn, full = 0, painted = 0, soft = 0, rich = 0, steps = 0;
   for (uint word = header.pathWords; word > 0 && open != 0; --word) {
     ++steps;
     if (header.pathWords - word >= kMaxWords) {
@@ -131,6 +133,7 @@ void main() {
   const uint paintedList = paintedTiles(), crowdedList = crowdedTiles(), rowList = rowTiles();
   for (uint t = 0; t < width; ++t) {
     const uint tile = firstTile + t, list = lists + t * listWords, mask = 1u << t;
+    if ((drawn & mask) == 0) continue;
     if ((full & mask) != 0) {
 #if SPLIT
       bins[richTile(crowdedList, nextFull++)] = tile;

@@ -36,10 +36,11 @@ PassBuilder::PassBuilder(const CanvasSizes& canvas, const core::Device& device, 
                                                               room.items * VkDeviceSize(sizeof(shader::PatchItemRecord))
                                                         : 0);
   fromHost = list.add({"constants", core::ResourceKind::constants,
-                       heads + room.items * sizeof(ItemRecord) + placed * sizeof(PlacementRecord) + shapeBytes});
+                       heads + room.items * sizeof(ItemRecord) + placed * sizeof(PlacementRecord) + shapeBytes +
+                           sizes.damageWords() * 4});
   paths = list.add({"paths", scratch, VkDeviceSize(room.paths) * sizeof(shader::PlacedPath)});
   words = list.add({"tile words", scratch, VkDeviceSize(sizes.maxWords) * sizeof(shader::TileWord)});
-  bins = list.add({"bins", scratch, sizes.binsEnd() * 4});
+  bins = list.add({"bins", scratch, (sizes.binsEnd() + sizes.damageWords()) * 4});
   entries = list.add({"entries", scratch, VkDeviceSize(sizes.maxEntries) * shader::kEntryWords * 4});
   counters = list.add({"counters", scratch, sizeof(CanvasCounters)});
   items = list.add({"items", scratch, heads + shader::kFirstItems * 4 + placed * sizeof(ItemRecord)});

@@ -29,6 +29,9 @@ CanvasSizes::binWords() const { // enough for any recording with the largest bin
 // Paths in the lists of all bins: most paths are in one or two.
 uint32_t CanvasSizes::binLists() const { return software ? 0 : 2 * items.paths + 65536; }
 
+uint64_t CanvasSizes::damageWords() const {
+  return KeptRecording::damageWords(divide(maxWidth, shader::kTileSize), divide(maxHeight, shader::kTileSize));
+}
 uint64_t CanvasSizes::binsEnd() const {
   const uint64_t lists = tiles() * (software ? listWords() + 3 : 2) + binLists();
   // Of small glyphs alone the tiles have lists in place of bins and theirs, and some are left over.

@@ -18,8 +18,9 @@ struct CanvasSizes {
   uint64_t tiles() const;     ///< of the canvas, or of pictures of layers
   uint32_t listWords() const; ///< of a tile's list on software devices
   uint64_t binWords() const;
-  uint32_t binLists() const; ///< paths in the lists of all bins
-  uint64_t binsEnd() const;  ///< words that bins and all lists take
+  uint32_t binLists() const;    ///< paths in the lists of all bins
+  uint64_t binsEnd() const;     ///< words that bins and all lists take
+  uint64_t damageWords() const; ///< behind those (KeptRecording::damage)
   /// Tile entries that small glyphs may take.
   uint32_t smallGlyphRoom() const { return software ? 0 : maxEntries / 2; }
   /// Of the lists between mark and fill: rows of flattened segments, or pieces of them on software devices.

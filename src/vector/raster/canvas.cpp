@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 namespace gpgp::vector {
 namespace {
@@ -56,14 +57,69 @@ CanvasSizes sizesOf(const GpgpCanvasCreateInfo& info, bool software) {
           .imagePages = pages,
           .imageTiles = pages > 1 ? divide(pixels, shader::kTileSize * shader::kTileSize) : 0};
 }
+/// Which of the shaders paint a recording.
+struct Look {
+  bool gradients, projective, images, groups, several;
+  bool rich;  ///< what is in a group or has a projective gradient or image takes the general shader, beside the others'
+  bool alone; ///< small glyphs of one colour each are all there is
+  bool pages; ///< of images
+  uint64_t bits() const {
+    uint64_t all = 0;
+    for (const bool bit : {gradients, projective, images, groups, several, rich, alone, pages}) all = all * 2 + bit;
+    return all;
+  }
+};
+Look lookOf(const Gather& gather, const GpgpCanvasInfo& info, const CanvasSizes& sizes, uint32_t tiles) {
+  Look look{};
+  look.gradients = gather.gradients;
+  look.projective = gather.projective;
+  look.images = gather.images;
+  look.groups = gather.groups;
+  look.several = gather.assetCount > 1 || gather.lists;
+  look.rich = look.groups || ((look.gradients || look.images) && look.projective);
+  const uint64_t lists = uint64_t(tiles) * shader::kTileListWords + uint64_t(gather.smallGlyphEntries()) * 3;
+  look.alone = gather.smallGlyphs() > 0 && gather.smallGlyphs() == gather.placements() && !look.gradients &&
+               !look.rich && shader::kFirstBin + lists <= sizes.binsEnd();
+  look.pages = look.images && info.imageCount > shader::kPageImages;
+  return look;
+}
+
+/// Of what composites a recording with layers; never 0.
+uint64_t layersOf(const LayerPlanner& planner, const Gather& gather) {
+  if (!planner.composites()) return 1;
+  StateHash hash;
+  hash.add(planner.width()).add(planner.height());
+  const std::span<const shader::OperationRecord> operations = planner.operations();
+  hash.add(operations[0].a).add(operations[0].result); // the rest of it is not the plan's
+  hash.addBytes(operations.data() + 1, (operations.size() - 1) * sizeof operations[0]);
+  for (const core::Step& step : planner.steps()) hash.add(step);
+  for (const core::Resident* asset : gather.assets()) hash.add(asset->handle).add(asset->handle->generation);
+  return hash.value() | 1;
+}
+
+/// Whether the target's contents are given up.
+bool losesTarget(const GpgpCanvasInfo& info) {
+  return info.target.view && info.target.before.layout == VK_IMAGE_LAYOUT_UNDEFINED &&
+         !(info.base.accessMode & GPGP_ACCESS_EXTERNAL_BARRIERS);
+}
 } // namespace
+
+uint64_t Canvas::settingsOf(const GpgpCanvasInfo& info, bool pictured) const {
+  const GpgpImage& t = info.target;
+  StateHash hash;
+  hash.add(handle).add(handle->generation).add(info.width).add(info.height).add(info.samples ? info.samples : 16);
+  hash.add(info.background).add(info.encodeSrgb).add(info.exactArea).add(info.blendSrgb).add(pictured);
+  hash.add(t.view);
+  if (t.view) hash.add(t.image).add(t.format).add(t.mipLevel).add(t.arrayLayer);
+  return hash.value();
+}
 
 Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
     : Recorder(owner, core::Kind::canvas, info.base, GPGP_SERVICE_VECTOR), sizes_(sizesOf(info, owner.device.software)),
       assets_(sizes_.items.items, &owner.host()), tables_(sizes_.items, &owner.host()),
       layers_(sizes_.layers, sizes_.layers.pixels ? sizes_.items.items : 0, &owner.host()),
       images_(sizes_.imagePages > 1 ? sizes_.imagePages * shader::kPageImages : 0, &owner.host()),
-      imagesHold_(sizes_.imagePages, &owner.host()) {}
+      imagesHold_(sizes_.imagePages, &owner.host()), damage_(sizes_.damageWords(), &owner.host()) {}
 
 Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCanvasCreateInfo& info) {
   auto canvas = core::makeUnique<Canvas>(context.host(), context, info);
@@ -89,9 +145,13 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* 
   for (const float v : info.background)
     if (!std::isfinite(v))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "background holds a number that is not finite");
-  if (!history && !info.target.view)
+  const bool pictured = history && history->width;
+  if (!pictured && !info.target.view)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "neither history nor target is given: nothing would be written");
-  if (history && (history->width < info.width || history->height < info.height))
+  if (info.keep && (!history || !history->kept))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "keep is set, but %s (GpgpCanvasHistoryCreateInfo::maxKept)",
+                     history ? "the history remembers nothing" : "there is no history");
+  if (pictured && (history->width < info.width || history->height < info.height))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "the history is %u x %u, the canvas %u x %u", history->width,
                      history->height, info.width, info.height);
   if (info.target.view) {
@@ -103,12 +163,12 @@ Result<void> Canvas::checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* 
                        info.target.height, info.width, info.height);
   }
   const uint32_t target = targetOf(info);
-  if ((history && !sizes_.writes(kNoImage)) || !sizes_.writes(target))
+  if ((pictured && !sizes_.writes(kNoImage)) || !sizes_.writes(target))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
                      "the canvas was made without targets for recordings that write %s (GpgpCanvasCreateInfo::targets)",
-                     history && !sizes_.writes(kNoImage) ? "a history"
-                     : target == kHasImage8              ? "R8G8B8A8_UNORM"
-                                                         : "R16G16B16A16_SFLOAT");
+                     pictured && !sizes_.writes(kNoImage) ? "a history"
+                     : target == kHasImage8               ? "R8G8B8A8_UNORM"
+                                                          : "R16G16B16A16_SFLOAT");
   if (info.imageCount > sizes_.imagePages * shader::kPageImages)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
                      "imageCount is %u; the canvas was made for %u (GpgpCanvasCreateInfo::maxImages)", info.imageCount,
@@ -159,31 +219,66 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   // Recordings that show layers are planned first.
   const bool layered =
       std::any_of(assets.begin(), assets.end(), [](const ItemAsset& asset) { return asset.layered(); });
+  const bool pictured = history && history->width;
+  KeptRecording* const kept = history && history->kept ? &*history->kept : nullptr;
+  if (kept) kept->begin(divide(info.width, shader::kTileSize), divide(info.height, shader::kTileSize), damage_);
   LayerPlanner planner(layers_, sizes_.layers, operationPasses_, sizes_.maxBins(), info);
-  Gather gather(context, sizes_.items, tables_, placements, info, layered ? 0 : sizes_.smallGlyphRoom(),
-                sizes_.maxTilePatches != 0, layered ? &planner : nullptr);
+  const uint32_t smallGlyphRoom = layered ? 0 : sizes_.smallGlyphRoom();
+  std::optional<Gather> gathered;
+  gathered.emplace(context, sizes_.items, tables_, placements, info, smallGlyphRoom, sizes_.maxTilePatches != 0,
+                   layered ? &planner : nullptr, kept);
   for (uint32_t i = 0; i < info.itemCount && layered; ++i)
-    if (auto ok = gather.plan(i, assets[i]); !ok) return ok;
+    if (auto ok = gathered->plan(i, assets[i]); !ok) return ok;
   planner.finish();
   const bool composites = layered && planner.composites();
   operationCount_ = composites ? planner.operations().size() : 0;
   const uint32_t width = composites ? planner.width() : info.width,
                  height = composites ? planner.height() : info.height; // of what is rasterised
   for (uint32_t i = 0; i < info.itemCount; ++i)
-    if (auto ok = gather.add(i, assets[i]); !ok) return ok;
+    if (auto ok = gathered->add(i, assets[i]); !ok) return ok;
+  const uint32_t tilesX = divide(width, shader::kTileSize), tilesY = divide(height, shader::kTileSize),
+                 tiles = tilesX * tilesY;
+  const Look look = lookOf(*gathered, info, sizes_, tiles);
+  const KeptRecording::Whole whole{settingsOf(info, pictured), look.bits(), layered ? layersOf(planner, *gathered) : 0,
+                                   recordings_ + 1, gathered->complete()};
+  GpgpCanvasRedraw redraw = GPGP_CANVAS_REDRAW_NOT_ASKED;
+  if (info.keep) redraw = kept->compare(whole, broken_);
+  if (redraw == GPGP_CANVAS_REDRAW_NONE && losesTarget(info)) redraw = GPGP_CANVAS_REDRAW_SETTINGS;
+  const uint32_t shown = divide(info.width, shader::kTileSize) * divide(info.height, shader::kTileSize);
+  const bool partly = redraw == GPGP_CANVAS_REDRAW_NONE;
+  r.note = {whole.number, shown, partly ? kept->damagedTiles() : shown, static_cast<uint32_t>(redraw)};
+  const auto recorded = [&] {
+    recordings_ = whole.number;
+    if (kept) kept->commit(whole, !partly);
+    if (!pictured) return;
+    history->preparedWidth = info.width;
+    history->preparedHeight = info.height;
+  };
+  if (partly && kept->damagedTiles() == 0) {
+    if (auto ok = recordNothing(r, info); !ok) return ok;
+    recorded();
+    return {};
+  }
+  if (partly) { // once more, without what lies elsewhere
+    gathered.emplace(context, sizes_.items, tables_, placements, info, smallGlyphRoom, sizes_.maxTilePatches != 0,
+                     nullptr, kept, true);
+    for (uint32_t i = 0; i < info.itemCount; ++i)
+      if (auto ok = gathered->add(i, assets[i]); !ok) return ok;
+  }
+  Gather& gather = *gathered;
   CanvasHeader header{};
   gather.finish(header);
   for (uint32_t i = 0; const Gather::BoundBuffer& bound : gather.buffers()) {
     r.bindings[i].ownBuffer = bound.buffer;
     r.bindings[i++].ownSize = bound.size;
   }
-  const bool gradients = gather.gradients, projective = gather.projective, images = gather.images;
-  const bool several = gather.assetCount > 1 || gather.lists;
+  const bool gradients = look.gradients, projective = look.projective, images = look.images, several = look.several;
+  const bool rich = look.rich, alone = look.alone;
 
   header.width = width;
   header.height = height;
-  header.tilesX = divide(width, shader::kTileSize);
-  header.tilesY = divide(height, shader::kTileSize);
+  header.tilesX = tilesX;
+  header.tilesY = tilesY;
   header.pathWords = divide(header.pathCount, 32);
   // Small bins where there are many paths, if there is room for them.
   constexpr uint32_t kPathsOfBin = 64;
@@ -203,14 +298,12 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   header.entryLimit = sizes_.maxEntries - gather.smallGlyphEntries();
   header.rowLimit = sizes_.maxRows();
   header.samples = info.samples ? info.samples : 16;
-  header.flags = (history ? shader::kWriteView : 0) | (info.encodeSrgb ? shader::kEncodeSrgb : 0) |
+  header.flags = (pictured ? shader::kWriteView : 0) | (info.encodeSrgb ? shader::kEncodeSrgb : 0) |
                  (info.exactArea ? shader::kExactArea : 0) | (info.blendSrgb ? shader::kBlendSrgb : 0);
   if (composites) header.flags |= shader::kWriteView | shader::kKeepEncoding;
   if (layered) header.sources = std::max(header.sources, planner.runsNeeded());
   header.layerPixels = layered ? planner.pixelsNeeded() : 0;
   header.layerOperations = layered ? planner.operationsNeeded() : 0;
-  // Only what is in a group or has a projective gradient or image takes the general shader, beside the others'.
-  const bool rich = gather.groups || ((gradients || images) && projective);
   if (rich) header.flags |= shader::kSplitRich;
   // Few segments are dealt out to many workgroups, which then each wait for less; many are better taken together.
   const uint32_t perGroup = sizes_.software ? 64 : header.segmentCount < 16384 ? 4 : shader::kMostSegments;
@@ -224,6 +317,7 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                                             << i % shader::kPageImages * shader::kImageBits;
   header.images = imagesHold_[0];
   header.imageTiles = pages > 1 ? sizes_.imageTiles : 0;
+  if (partly) header.damage = static_cast<uint32_t>(sizes_.binsEnd());
   const shader::vec4 background{info.background[0], info.background[1], info.background[2], info.background[3]};
   if (!composites) header.background = background; // else what layers make lies on it
   const auto bytes = [](const auto& records, uint32_t count) { return std::as_bytes(std::span(records).first(count)); };
@@ -233,13 +327,19 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   } heads{header, {}};
   std::copy_n(gather.firstSlots().begin(), shader::kSlots, heads.slots);
   gather.placePatchTable(sizes_.maxTilePatches);
-  r.constants = {bytes(std::span(&heads, 1), 1),         std::as_bytes(std::span(placements, gather.placements())),
-                 bytes(tables_.sources, gather.sources), bytes(tables_.shapes, gather.shapes),
-                 bytes(tables_.paints, gather.paints),   bytes(tables_.stops, gather.stops),
-                 bytes(tables_.clips, gather.clips),     bytes(tables_.layers, gather.layers),
-                 bytes(tables_.slots, gather.slots()),   bytes(tables_.patchItems, gather.patchItems)};
+  r.constants = {bytes(std::span(&heads, 1), 1),
+                 std::as_bytes(std::span(placements, gather.placements())),
+                 bytes(tables_.sources, gather.sources),
+                 bytes(tables_.shapes, gather.shapes),
+                 bytes(tables_.paints, gather.paints),
+                 bytes(tables_.stops, gather.stops),
+                 bytes(tables_.clips, gather.clips),
+                 bytes(tables_.layers, gather.layers),
+                 bytes(tables_.slots, gather.slots()),
+                 bytes(tables_.patchItems, gather.patchItems),
+                 partly ? std::as_bytes(kept->damage()) : std::span<const std::byte>{}};
 
-  if (history) {
+  if (pictured) {
     core::Binding& binding = r.bindings[composites ? shader::kBindLayeredHistory : shader::kBindHistory];
     binding.ownBuffer = history->buffer();
     binding.ownSize = history->bufferSize();
@@ -251,16 +351,12 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
     r.bindings[shader::kBindHistory].scratch = shader::kBindPictures;
     shader::OperationRecord& present = layers_.operations[0];
     present.values[0] = background;
-    present.mode = history != nullptr;
+    present.mode = pictured;
     r.bindings[shader::kBindOperations].hostData = std::as_bytes(planner.operations());
     r.steps = planner.steps();
     r.conditions[kPresent + target] = true;
   }
   // Small glyphs have passes of their own; recordings of nothing else, in one colour each, need little more than that.
-  const uint32_t tiles = header.tilesX * header.tilesY;
-  const uint64_t tileLists = uint64_t(tiles) * shader::kTileListWords + uint64_t(gather.smallGlyphEntries()) * 3;
-  const bool alone = gather.smallGlyphs() > 0 && gather.smallGlyphs() == gather.placements() && !gradients && !rich &&
-                     shader::kFirstBin + tileLists <= sizes_.binsEnd();
   const uint32_t form = projective ? 2 : several ? 1 : 0;
   const bool sixteen = header.samples == 16 && !sizes_.software;
   if (alone) {
@@ -286,7 +382,8 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
                                    : kRich};
   for (const uint32_t painted : std::span(kinds).first(rich ? 3 : 2)) {
     r.conditions[painted + image] = true;
-    if (sizes_.software && history && !composites) r.conditions[painted + kNoImage] = true; // there no pass writes both
+    if (sizes_.software && pictured && !composites)
+      r.conditions[painted + kNoImage] = true; // there no pass writes both
   }
   if (rich) r.conditions[images ? kAsideImages : one ? kAsideOne : kAside] = true;
   if (rich || sizes_.software) r.conditions[!rich ? kSiftPlain : one ? kSplitOne : kSplit] = true;
@@ -338,11 +435,23 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   r.groups[kSplits] = {divide(header.tilesX, kSplitSide), divide(header.tilesY, kSplitSide), 1};
   if (auto ok = check(r); !ok) return ok;
   if (auto ok = record(r); !ok) return ok;
-  if (history) {
-    history->preparedWidth = info.width;
-    history->preparedHeight = info.height;
-  }
+  recorded();
   return {};
+}
+
+Result<void> Canvas::recordNothing(core::Record& r, const GpgpCanvasInfo& info) {
+  const uint32_t target = targetOf(info);
+  if (target != kNoImage)
+    r.bindings[target == kHasImage8 ? shader::kBindImage8 : shader::kBindImage16].image = &info.target;
+  r.nothing = true;
+  if (auto ok = check(r); !ok) return ok;
+  return record(r);
+}
+
+void Canvas::harvested(const core::RawReport& report) {
+  CanvasCounters counters{};
+  if (report.header.status == GPGP_SUCCESS) std::memcpy(&counters, report.words.data(), sizeof counters);
+  if (report.header.status != GPGP_SUCCESS || counters.pathsDropped || counters.ended) broken_ = report.note[0];
 }
 
 Result<void> Canvas::draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInfo& info, CanvasHistory& history) {
@@ -409,6 +518,9 @@ bool Canvas::takeCanvasReport(GpgpCanvasReport& report) {
   report.imagePixels =
       static_cast<uint32_t>(std::min<uint64_t>(uint64_t(counters.imageTiles) * kTilePixels, UINT32_MAX));
   report.imagePixelsGiven = executed ? sizes_.imageTiles * kTilePixels : 0;
+  report.tiles = raw.note[1];
+  report.tilesDrawn = executed ? raw.note[2] : 0;
+  report.redraw = static_cast<GpgpCanvasRedraw>(raw.note[3]);
   if (counters.pathsDropped) report.base.status = GPGP_BUDGET_EXCEEDED;
   if (counters.ended) report.base.status = GPGP_ERROR_UNSUPPORTED;
   return true;

@@ -34,6 +34,10 @@ public:
 
 private:
   core::Result<void> checkInfo(const GpgpCanvasInfo& info, const CanvasHistory* history) const;
+  void harvested(const core::RawReport& report) override;
+  uint64_t settingsOf(const GpgpCanvasInfo& info, bool pictured) const;
+  /// Where nothing is to be drawn.
+  core::Result<void> recordNothing(core::Record& r, const GpgpCanvasInfo& info);
 
   const CanvasSizes sizes_;
   // Room for one recording's.
@@ -44,6 +48,8 @@ private:
   std::pmr::vector<uint32_t> imagesHold_;          ///< by page, as CanvasHeader::images
   size_t operationCount_ = 0;                      ///< of the last recording
   std::array<uint32_t, 6> operationPasses_{};      ///< by OPERATIONS (operate.comp)
+  std::pmr::vector<uint32_t> damage_;              ///< of the recording at hand, where one is kept
+  uint32_t recordings_ = 0, broken_ = 0;           ///< so far; number of the last one not known to have run whole
 };
 
 } // namespace gpgp::vector

@@ -54,6 +54,10 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
                                  : makeOutlines(drawing, &context.host());
   asset->methods_ = methods;
   if (!flattened) outlines.ends.resize(drawing.paths.size(), 0);
+  for (const shader::vec4& box : outlines.boxes)
+    if (box.x <= box.z)
+      asset->ink_ = {std::min(asset->ink_.x, box.x), std::min(asset->ink_.y, box.y), std::max(asset->ink_.z, box.z),
+                     std::max(asset->ink_.w, box.w)};
   asset->patches_ = static_cast<uint32_t>(drawing.patches.size());
   asset->ends_.assign(outlines.ends.begin(), outlines.ends.end());
   for (const PaintRecord& paint : drawing.paints)
@@ -135,6 +139,7 @@ core::Result<core::Unique<CanvasHistory>> CanvasHistory::create(core::Context& c
   auto view = core::makeUnique<CanvasHistory>(context.host(), context, info.label);
   view->width = info.width;
   view->height = info.height;
+  if (info.maxKept) view->kept.emplace(info.maxKept, &context.host());
   const std::pmr::vector<std::byte> none(&context.host());
   if (auto ok = view->makeResident(GPGP_SERVICE_VECTOR, none, VkDeviceSize(info.width) * info.height * 8); !ok)
     return ok.error();

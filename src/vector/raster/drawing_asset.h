@@ -2,6 +2,7 @@
 #pragma once
 #include "core/resident.h"
 #include "vector/patch/patches.h"
+#include "vector/raster/kept.h"
 #include "vector/raster/segments.h"
 
 #include <optional>
@@ -84,6 +85,8 @@ public:
     return std::nullopt;
   }
   const float* bounds() const { return bounds_; }
+  /// The box of all boxes of its paths, those of clips included; turned over without any.
+  const shader::vec4& ink() const { return ink_; }
   const float* viewport() const { return viewport_; }
 
 private:
@@ -107,17 +110,19 @@ private:
   uint32_t patchWords_ = 0, pathsLeftOut_ = 0;
   PatchQuads quads_;
   shader::SlotRecord tables_{};
+  shader::vec4 ink_{3e38f, 3e38f, -3e38f, -3e38f};
   float bounds_[4] = {}, viewport_[4] = {};
 };
 
-/// One rasterised canvas: packed half4, premultiplied linear.
+/// One rasterised canvas: packed half4, premultiplied linear. And what the recording of it was, where it is to be kept.
 class CanvasHistory final : public core::Resident {
 public:
   static core::Result<core::Unique<CanvasHistory>> create(core::Context& context,
                                                           const GpgpCanvasHistoryCreateInfo& info);
   CanvasHistory(core::Context& owner, const char* name) : Resident(owner, core::Kind::canvasHistory, name) {}
-  uint32_t width = 0, height = 0;                 ///< room
+  uint32_t width = 0, height = 0;                 ///< room; 0: it holds no picture
   uint32_t preparedWidth = 0, preparedHeight = 0; ///< what the last recording leaves; 0: nothing yet
+  std::optional<KeptRecording> kept;
 };
 
 } // namespace gpgp::vector

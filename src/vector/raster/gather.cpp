@@ -16,11 +16,12 @@ using shader::kShapeSlot;
 using shader::PlacementRecord;
 
 ItemTables::ItemTables(const ItemBudgets& budgets, std::pmr::memory_resource* memory)
-    : sources(budgets.items, memory), shapes(budgets.shapes, memory), paints(budgets.shapes, memory),
-      stops(size_t(budgets.shapes) * 2, memory), clips(budgets.items, memory), layers(budgets.items, memory),
-      patchItems(budgets.items, memory), clipStates(budgets.items, memory), groupStates(budgets.items, memory),
-      clipsWanted(budgets.items, memory), groupsWanted(budgets.items, memory), assets(maxAssets(budgets), memory),
-      assetSlots(assets.size(), memory), slots(assets.size() + 1 + Gather::kPatchTableSlots, memory),
+    : sources(budgets.items, memory), sourceStates(budgets.items, memory), clipStateHashes(budgets.items, memory),
+      shapes(budgets.shapes, memory), paints(budgets.shapes, memory), stops(size_t(budgets.shapes) * 2, memory),
+      clips(budgets.items, memory), layers(budgets.items, memory), patchItems(budgets.items, memory),
+      clipStates(budgets.items, memory), groupStates(budgets.items, memory), clipsWanted(budgets.items, memory),
+      groupsWanted(budgets.items, memory), assets(maxAssets(budgets), memory), assetSlots(assets.size(), memory),
+      slots(assets.size() + 1 + Gather::kPatchTableSlots, memory),
       assetCells(std::bit_ceil(2 * assets.size()), memory) {}
 
 bool ItemAsset::layered() const {
@@ -90,6 +91,7 @@ uint32_t Gather::addSource(const Map& map, float opacity, uint32_t firstImage, c
   lists = lists || item.clip || item.layer || shader::hasScissor(item);
   projective = projective || item.perspective.w > 0;
   tables_.sources[sources] = item;
+  if (kept_ && !damagedOnly_) tables_.sourceStates[sources] = stateOf(item);
   return sources++;
 }
 
@@ -197,6 +199,12 @@ void Gather::addRun(const DrawingAsset& drawing, uint32_t index, uint32_t source
   pathsDropped_ += run.paths - paths;
   full_ = full_ || paths < run.paths;
   if (paths == 0) return;
+  const ItemRecord* const item = &tables_.sources[source];
+  const auto state = [&](StateHash& hash) {
+    hash.add(identityOf(drawing)).add(index).add(paths);
+    for (uint32_t i = 0; i < drawing.images(); ++i) addImage(hash, uint64_t(item->firstImage) + i);
+  };
+  if (!shows(source, state, [&] { return planner_ ? TileBox{} : tilesOf(*item, drawing.ink(), kNoFrame); })) return;
   gradients = gradients || drawing.gradients();
   images = images || drawing.images();
   groups = groups || drawing.groups();
@@ -276,6 +284,7 @@ bool Gather::addShape(const shader::ShapeRecord& shape, uint32_t source, const s
 void Gather::addShapes(const List& list, std::span<const List::Shape> from, uint32_t source) {
   for (const List::Shape& shape : from) {
     shader::ShapeRecord record = shape.record;
+    if (!full_ && !showsShape(list, shape, source)) continue;
     if (shader::isTriangle(record)) {
       record = List::toRecord(record, info_.blendSrgb);
       gradients = true;
@@ -334,6 +343,13 @@ Result<void> Gather::resolveClips(const List& list, const Map& map, const Chain&
     if (!addShape(clip.shape, source, {})) { // as where the source found no room
       ++clipsDropped_;
       continue;
+    }
+    if (kept_) {
+      StateHash hash;
+      hash.add(state.chain ? tables_.clipStateHashes[state.chain - 1] : 0).add(clip.shape);
+      tables_.clipStateHashes[clips] = hash.add(tables_.sourceStates[source]).value();
+      const auto shape = [&](StateHash& of) { of.add(tables_.clipStateHashes[clips]); };
+      shows(source, shape, [&] { return tilesOf(clip.shape, source); }); // it stays where it shows nothing
     }
     tables_.clips[clips++] = {path, state.chain};
     state.chain = clips;
@@ -467,6 +483,9 @@ Result<void> Gather::addLayeredList(const List& list, const GpgpCanvasItem& item
       shader::ShapeRecord all{};
       all.box = inside.scissor + shader::vec4(-1, -1, 1, 1);
       all.frame = {0, 0, 1, 0};
+      if (source != kNone)
+        shows(
+            source, [](StateHash&) {}, [] { return TileBox{}; });
       if (source != kNone || full_) pathsDropped_ += !addShape(all, source, shader::vec4(1));
       continue;
     }

@@ -7,6 +7,7 @@
 #include "core/recorder.h"
 #include "vector/raster/drawing_asset.h"
 #include "vector/raster/glyph_set.h"
+#include "vector/raster/kept.h"
 #include "vector/raster/layer_plan.h"
 #include "vector/ui/list.h"
 
@@ -41,6 +42,7 @@ struct ItemTables {
     float opacity; ///< of each thing in it
   };
   std::pmr::vector<shader::ItemRecord> sources;
+  std::pmr::vector<uint64_t> sourceStates, clipStateHashes; ///< of sources and clips, as Gather::shows() needs them
   std::pmr::vector<shader::ShapeRecord> shapes;
   std::pmr::vector<shader::PaintRecord> paints;
   std::pmr::vector<shader::StopRecord> stops;
@@ -60,10 +62,11 @@ class Gather {
 public:
   /// `placed`: room for one of each item, glyph and shape of the budgets; only written. `smallGlyphRoom`: how many tile
   /// entries small glyphs may take for themselves (small_glyphs.comp). `planner`: of recordings that show layers; null
-  /// in others.
+  /// in others. `kept`: takes the things that are placed; where `damagedOnly` it has them, and says which are.
   Gather(core::Context& context, const ItemBudgets& budgets, ItemTables& tables, shader::PlacementRecord* placed,
-         const GpgpCanvasInfo& info, uint32_t smallGlyphRoom, bool patches, LayerPlanner* planner = nullptr)
-      : patched_(patches),
+         const GpgpCanvasInfo& info, uint32_t smallGlyphRoom, bool patches, LayerPlanner* planner = nullptr,
+         KeptRecording* kept = nullptr, bool damagedOnly = false)
+      : patched_(patches), kept_(kept), damagedOnly_(damagedOnly),
         planner_(planner), base_{{0, 0, static_cast<int>(info.width), static_cast<int>(info.height)}, 0, 0},
         region_(base_), context_(context), budgets_(budgets), tables_(tables), placed_(placed), info_(info),
         smallGlyphRoom_(smallGlyphRoom) {
@@ -99,6 +102,7 @@ public:
   uint32_t smallGlyphs() const { return used_.smallGlyphs; }             ///< small glyphs
   uint32_t smallGlyphEntries() const { return used_.smallGlyphEntries; } ///< what they take at most
   uint32_t placements() const { return used_.placements; }
+  bool complete() const { return !full_; } ///< nothing was left out
   uint32_t sources = 0, shapes = 0, paints = 0, stops = 0, clips = 0, layers = 0, patchItems = 0; ///< used
 
 private:
@@ -117,6 +121,7 @@ private:
   class SmallGlyph;
   core::Result<void> addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphInstance> glyphs, uint32_t source);
   void addBlock(const Block& block, uint32_t source);
+  bool showsGlyph(const Block& block, size_t k, uint32_t source);
   core::Result<void> checkInstances(std::span<const GpgpGlyphInstance> glyphs, size_t first, size_t end) const;
   core::Result<void> addList(const List& list, const GpgpCanvasItem& item, const Chain& own);
   core::Result<void> addLayeredList(const List& list, const GpgpCanvasItem& item, const Map& map, const Chain& own);
@@ -133,7 +138,23 @@ private:
   void resolveGroups(const List& list, float opacity, bool all);
   void addShapes(const List& list, std::span<const List::Shape> from, uint32_t source);
   bool addShape(const shader::ShapeRecord& shape, uint32_t source, const shader::vec4& color);
+  bool showsShape(const List& list, const List::Shape& shape, uint32_t source);
   uint32_t addSource(const Map& map, float opacity, uint32_t firstImage, const Chain& clip);
+  /// Whether a thing is placed: `state` adds what its pixels depend on to a hash, `tiles` finds its box.
+  template <class State, class Tiles> bool shows(uint32_t source, const State& state, const Tiles& tiles) {
+    if (!kept_) return true;
+    if (damagedOnly_) return kept_->shows(thing_++);
+    StateHash hash;
+    state(hash.add(tables_.sourceStates[source]));
+    kept_->add(hash.value(), tiles);
+    return true;
+  }
+  TileBox tilesOf(const shader::ItemRecord& item, const shader::vec4& box, const shader::vec4& frame) const;
+  TileBox tilesOf(const shader::ShapeRecord& shape, uint32_t source) const;
+  uint64_t stateOf(const shader::ItemRecord& source) const;
+  void addImage(StateHash& hash, uint64_t image) const;
+  static uint64_t identityOf(const core::Object& asset);
+  static constexpr shader::vec4 kNoFrame{0, 0, 1, 0};
   /// kNone where there is no room for another asset.
   core::Result<uint32_t> bind(const core::Resident& asset, const shader::SlotRecord& tables);
   [[gnu::format(printf, 3, 4)]] core::Error wrong(GpgpResult code, const char* format, ...) const;
@@ -141,6 +162,9 @@ private:
   BoundBuffer buffers_[shader::kMaxBuffers] = {};
   uint32_t bufferCount_ = 0;
   const bool patched_; ///< drawings that have patches are drawn by them
+  KeptRecording* const kept_;
+  const bool damagedOnly_;
+  uint32_t thing_ = 0; ///< of kept_'s
   LayerPlanner* const planner_;
   LayerRegion base_, region_; ///< where plain things go; where what is added lies
   uint32_t unit_ = 0, nextRun_ = 0;

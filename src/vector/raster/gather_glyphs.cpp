@@ -1,4 +1,5 @@
 // Glyphs of a text as placements, and which of them are for small_glyphs.comp.
+#include "vector/place/placement.h"
 #include "vector/raster/gather.h"
 #include "vector/shared/edge.h"
 
@@ -53,6 +54,7 @@ private:
 struct Gather::Block {
   static constexpr size_t kMost = 64;
   uint32_t firstRecord = 0; ///< of the set
+  uint64_t set = 0;         ///< which it is
   const GpgpGlyphInstance* from[kMost];
   const GlyphSet::Glyph* glyph[kMost];
   float x[kMost], y[kMost], reachX[kMost], reachY[kMost]; ///< boxes: middles, and from there to the sides
@@ -139,6 +141,7 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
   const uint64_t frame = context_.current(), arrived = set.arrived();
   Block block;
   block.firstRecord = set.firstRecord();
+  block.set = kept_ ? identityOf(set) : 0;
   for (size_t i = 0; i < glyphs.size();) {
     const size_t first = i;
     Doubt doubt;
@@ -170,6 +173,21 @@ Result<void> Gather::addGlyphs(const GlyphSet& set, std::span<const GpgpGlyphIns
   return {};
 }
 
+bool Gather::showsGlyph(const Block& block, size_t k, uint32_t source) {
+  const GpgpGlyphInstance& from = *block.from[k];
+  const GlyphSet::Glyph& glyph = *block.glyph[k];
+  const uint32_t map = source & ((1u << shader::kSlotBit) - 1);
+  const auto state = [&](StateHash& hash) { hash.add(block.set).add(from).add(glyph.key); };
+  const auto tiles = [&] {
+    shader::PlacementRecord placement{};
+    placement.x = from.x;
+    placement.y = from.y;
+    placement.size = from.size;
+    return planner_ ? TileBox{} : tilesOf(shader::placed(tables_.sources[map], placement), glyph.ink, kNoFrame);
+  };
+  return shows(map, state, tiles);
+}
+
 void Gather::addBlock(const Block& block, uint32_t source) {
   Used used = used_; // a copy, which what is placed cannot be part of
   const Block::Sums& sums = block.sums;
@@ -185,6 +203,7 @@ void Gather::addBlock(const Block& block, uint32_t source) {
       pathsDropped_ += glyph.paths;
       continue;
     }
+    if (kept_ && !showsGlyph(block, k, source)) continue;
     const uint32_t tiles = block.tiles[k];
     const bool smallGlyph = tiles && tiles <= smallGlyphRoom_ - used.smallGlyphEntries;
     const float* c = from.color;

@@ -210,6 +210,13 @@ bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
     } else {
       glyph.reach = shader::vec2(std::numeric_limits<float>::infinity());
     }
+    glyph.ink = {3e38f, 3e38f, -3e38f, -3e38f};
+    for (size_t i = firstPath; i < path && tables.flattened; ++i) {
+      const shader::vec4& box = tables.outlines.boxes[i];
+      if (box.x <= box.z)
+        glyph.ink = {std::min(glyph.ink.x, box.x), std::min(glyph.ink.y, box.y), std::max(glyph.ink.z, box.z),
+                     std::max(glyph.ink.w, box.w)};
+    }
     for (size_t i = firstPath; i < path && tables.flattened; ++i, to += sizeof(BoxedPath)) {
       BoxedPath boxed{tables.outlines.boxes[i], glyphs.drawing.paths[i]};
       if (boxed.path.paint) {

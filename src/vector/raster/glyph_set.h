@@ -22,6 +22,7 @@ public:
     PatchQuads quads;
     shader::vec2 middle = {}; ///< of the path that it is
     shader::vec2 reach = {};  ///< from there to the sides of its box; infinite where it is not one path
+    shader::vec4 ink = {};    ///< the box of all boxes of its paths; turned over without any
     uint16_t generation = 0;  ///< of the glyph; of the next one where there is none
     bool living = false, gradients = false;
     mutable uint64_t lastUsed = 0; ///< frame
