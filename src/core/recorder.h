@@ -50,7 +50,8 @@ struct Record {
   /// at. Passes that are not paged have the first page.
   std::span<const VkDescriptorImageInfo> pages;
   std::span<const uint32_t> pageConstants; ///< one a page
-  bool reports = false; ///< its passes write the whole report to the resource of that kind: nothing is copied
+  bool reports = false;       ///< its passes write the whole report to the resource of that kind: nothing is copied
+  uint32_t readBackBytes = 0; ///< of PassList::readBack, a multiple of 8; 0: none
 };
 
 struct DrawRecord {
@@ -66,6 +67,7 @@ struct DrawRecord {
 struct RawReport {
   GpgpReportHeader header{}; ///< status SUCCESS or NOT_EXECUTED
   std::span<const uint32_t> words;
+  std::span<const std::byte> readBack; ///< Record::readBackBytes; none of what was not executed
 };
 
 /// Whether a pipeline made for one target can draw into the other.
@@ -112,7 +114,7 @@ public:
   /// Whether a thread is using it (RecorderUse).
   std::atomic<bool> busy{false};
 
-  /// The oldest report not yet taken, if any. The words are valid until the next advance.
+  /// The oldest report not yet taken, if any. What it refers to is valid until the next advance.
   bool takeReport(RawReport& report);
 
   void advance();
@@ -142,6 +144,7 @@ private:
     uint64_t tag = 0;
     uint32_t marker = 0; ///< what the GPU will have written; 0: free
     bool report = false;
+    uint32_t readBackBytes = 0;
   };
   struct Target {
     GpgpTargetInfo info;
@@ -149,7 +152,7 @@ private:
   };
 
   Result<uint32_t> acquire() const;
-  void take(uint32_t slot, uint64_t tag, bool report);
+  void take(uint32_t slot, uint64_t tag, bool report, uint32_t readBackBytes = 0);
   void writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
                         VkDeviceSize scratchOffset, bool reports) const;
   Result<VkPipeline> createDrawPipeline(const DrawShaders& draw, const GpgpTargetInfo& target) const;
@@ -177,11 +180,14 @@ private:
   std::atomic<bool> ready_{false};
   Buffer scratch_, constants_, reports_;
   VkDeviceSize reportStride_ = 0;
+  static constexpr VkDeviceSize kMarkerBytes = 16;
+  VkDeviceSize readBackAt() const { return passes_.reportBytes + kMarkerBytes; } // in a slot of reports_
   static constexpr VkDeviceSize kUnusedBytes = 256;
   VkDeviceSize unusedOffset_ = 0; ///< behind the constants: what recordings leave out and passes could write
   std::pmr::vector<InFlight> slots_;
   std::pmr::vector<uint8_t> ran_;        // by pass
   std::pmr::vector<uint32_t> harvested_; // words of harvested reports, as many as queue_ has places
+  std::pmr::vector<uint64_t> readBacks_; // what came behind them
   std::pmr::vector<RawReport> queue_;    // ring of harvested reports
   size_t queueHead_ = 0, queueCount_ = 0;
   uint32_t nextMarker_ = 1;
