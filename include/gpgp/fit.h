@@ -1,5 +1,5 @@
-/* gpgp fit: inverse modelling. Finds the axiom whose derivation comes nearest to what is wanted: a silhouette, a volume,
- * a sum, or a score of the engine's own.
+/* gpgp fit: inverse modelling. Finds the axiom whose derivation comes nearest to what is wanted: a silhouette, a
+ * volume, a sum, or a score of the engine's own.
  *
  * A round is a list of candidates, axioms that differ in some of their fields. One recording derives them all and
  * measures each (GpgpSpawnInfo::measures); no instances are written. What the GPU found becomes scores, and scores
@@ -11,7 +11,7 @@
  *   gpgpAcceptAxioms           which candidates go on; the best one of all
  *
  * The functions keep nothing between calls, allocate nothing and use arithmetic that is the same everywhere: the same
- * GpgpFit and scores give the same axioms on every machine. @threads any, for all of them
+ * GpgpFit and scores give the same axioms on every machine.
  */
 #ifndef GPGP_FIT_H
 #define GPGP_FIT_H
@@ -67,17 +67,16 @@ typedef struct GpgpFitCandidate {
 } GpgpFitCandidate;
 
 /** Makes the axioms of a round. current: GpgpFitCandidate[candidates], as gpgpAcceptAxioms left them; not read in round
- *  0. Errors: INVALID_ARGUMENT. @lifetime call */
+ *  0. Errors: INVALID_ARGUMENT. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpProposeAxioms(const GpgpFit* fit, uint32_t round, const GpgpFitCandidate* current,
                                                 GpgpAxiom* proposed);
 
 /** Decides which axioms of a round go on. scores: of each of the proposed axioms; one that is no number is worse than
  *  all. current: written in round 0, later read and changed where a candidate is accepted. best: optional, the best of
  *  all rounds; written in round 0, later changed where one is better.
- *  Errors: INVALID_ARGUMENT. @lifetime call */
+ *  Errors: INVALID_ARGUMENT. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpAcceptAxioms(const GpgpFit* fit, uint32_t round, const GpgpAxiom* proposed,
-                                               const double* scores, GpgpFitCandidate* current,
-                                               GpgpFitCandidate* best);
+                                               const double* scores, GpgpFitCandidate* current, GpgpFitCandidate* best);
 
 /** What is wanted of measures. A score is the sum of its parts:
  *  sumWeights[m] * |sums[m] / 65536 - sums wanted|, and
@@ -89,7 +88,7 @@ typedef struct GpgpFitTarget {
   uint32_t targetCells; /**< The bits of GpgpOccupancy::target that are set. */
 } GpgpFitTarget;
 
-/** Turns measures into scores. Errors: INVALID_ARGUMENT. @lifetime call */
+/** Turns measures into scores. Errors: INVALID_ARGUMENT. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpScoreMeasures(const GpgpFitTarget* target, const GpgpAxiomMeasures* measures,
                                                 uint32_t count, double* scores);
 

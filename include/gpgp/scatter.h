@@ -1,9 +1,9 @@
 /* gpgp scatter: points at a distance from each other as axioms, by a density, on a terrain.
  *
  * The points are those of one pattern that covers the whole ground plane, a Poisson-disk pattern: no two are nearer
- * than a distance, and there is no room for many more: a square of that distance holds 0.59 points on average. A call returns the points of a rectangle. Rectangles that meet
- * share no point and leave none out, in whatever order they are asked for, on any machine and any thread: a world is
- * scattered tile by tile without seams.
+ * than a distance, and there is no room for many more: a square of that distance holds 0.59 points on average. A call
+ * returns the points of a rectangle. Rectangles that meet share no point and leave none out, in whatever order they are
+ * asked for, on any machine and any thread: a world is scattered tile by tile without seams.
  *
  * The function keeps nothing and calls no Vulkan. Arrays are read from host memory; what an engine has as a texture, it
  * hands over as it was loaded.
@@ -17,10 +17,10 @@ extern "C" {
 
 /** Numbers on a grid over the ground plane, bilinear in between, constant beyond. */
 typedef struct GpgpGroundField {
-  const float* values; /**< [height][width], rows along x, first row at the least z. Finite. @lifetime call */
-  uint32_t width, height;   /**< At least 1, at most 16384. */
-  float min[2], max[2];     /**< x and z of the first and of the last value, metres. min is less than max, but for a
-                             *   width or height of 1. */
+  const float* values;    /**< [height][width], rows along x, first row at the least z. Finite. @lifetime call */
+  uint32_t width, height; /**< At least 1, at most 16384. */
+  float min[2], max[2];   /**< x and z of the first and of the last value, metres. min is less than max, but for a
+                           *   width or height of 1. */
 } GpgpGroundField;
 
 /** What is scattered where. */

@@ -1,6 +1,6 @@
 // The C functions of fit.h: pure functions on the host.
-#include "core/result.h"
 #include "spawn/fit/fit.h"
+#include "core/result.h"
 
 #include <gpgp/fit.h>
 

@@ -16,9 +16,11 @@ TEST(CliFit, FindsTheExtentsOfASilhouetteAndAVolume) {
   const TemporaryFile grammar("block.pga", kBlock), png("mask.png"), picture("fit.png"), cells("cells.png");
   host::writePng(png.path(), mask);
   const std::vector<std::string> arguments = {
-      "fit",           grammar.path(), "--silhouette",  png.path(), "--height",      "32",           "--vary",
-      "size-x=1..30/1", "--vary",       "size-y=1..30/1", "--vary",   "size-z=1..9/2", "--measure", "all:xyz=1400",
-      "--candidates",  "200",          "--image",       picture.path(), "--compare", cells.path(),   "--validate"};
+      "fit",       grammar.path(),  "--silhouette",   png.path(),     "--height",
+      "32",        "--vary",        "size-x=1..30/1", "--vary",       "size-y=1..30/1",
+      "--vary",    "size-z=1..9/2", "--measure",      "all:xyz=1400", "--candidates",
+      "200",       "--image",       picture.path(),   "--compare",    cells.path(),
+      "--validate"};
   const json found = gpgpJson(arguments);
   EXPECT_EQ(found["score"], 0);
   EXPECT_EQ(found["size"], json::array({10, 20, 7}));

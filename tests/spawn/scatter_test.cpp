@@ -61,7 +61,7 @@ TEST(ScatterTest, PointsKeepTheirDistanceAndLeaveLittleRoom) {
     const double density = double(axioms.size()) / 2500; // points on the square of the distance
     EXPECT_GT(density, 0.57);
     EXPECT_LT(density, 0.9069 * 4 / 3.14159265); // the densest packing of disks
-    std::mt19937 random(3); // places, away from the edges, where one more point would fit
+    std::mt19937 random(3);                      // places, away from the edges, where one more point would fit
     std::uniform_real_distribution<double> place(0.1, 0.9);
     uint32_t room = 0;
     for (int i = 0; i < 4000; ++i)
@@ -88,8 +88,8 @@ TEST(ScatterTest, RectanglesInAnyOrderAreTheWhole) {
     std::shuffle(tiles.begin(), tiles.end(), random);
     std::vector<GpgpAxiom> parts;
     for (const auto& tile : tiles)
-      for (const GpgpAxiom& a : scattered(infoOf(1.7f, x[tile.first], z[tile.second], x[tile.first + 1],
-                                                 z[tile.second + 1], 3)))
+      for (const GpgpAxiom& a :
+           scattered(infoOf(1.7f, x[tile.first], z[tile.second], x[tile.first + 1], z[tile.second + 1], 3)))
         parts.push_back(a);
     EXPECT_EQ(sorted(parts), whole);
   }
@@ -142,15 +142,15 @@ TEST(ScatterTest, AxiomsStandOnTheTerrain) {
   info.base.transform[7] = 100;
   const auto axioms = scattered(info);
   for (const GpgpAxiom& a : axioms) {
-    const double x = std::clamp(double(a.transform[3]), 10.0, 26.0), z = std::clamp(double(a.transform[11]), 20.0, 28.0);
+    const double x = std::clamp(double(a.transform[3]), 10.0, 26.0),
+                 z = std::clamp(double(a.transform[11]), 20.0, 28.0);
     ASSERT_NEAR(a.transform[7], 100 + 1 + (x - 10) - (z - 20) * 1.5, 1e-4);
   }
   info.minHeight = -2;
   info.maxHeight = 3;
   const auto banded = scattered(info);
-  const auto within = std::count_if(axioms.begin(), axioms.end(), [](const GpgpAxiom& a) {
-    return a.transform[7] >= 99 && a.transform[7] <= 104;
-  });
+  const auto within = std::count_if(axioms.begin(), axioms.end(),
+                                    [](const GpgpAxiom& a) { return a.transform[7] >= 99 && a.transform[7] <= 104; });
   EXPECT_EQ(int64_t(banded.size()), within);
   EXPECT_GT(within, 100);
   const float flat = 4; // a field of one value
@@ -186,8 +186,9 @@ TEST(ScatterTest, WhatIsWrongIsRefusedAndShortListsAreSaid) {
     info.heights = &field;
     EXPECT_TRUE(refused(info));
   }
-  for (const GpgpScatterInfo& wrong : {infoOf(0, 0, 0, 1, 1), infoOf(nan, 0, 0, 1, 1), infoOf(1, 1, 0, 0, 1),
-                                       infoOf(1, 0, nan, 1, 1), infoOf(1, 0, 0, 2049, 1), infoOf(1, 65537, 0, 65538, 1)})
+  for (const GpgpScatterInfo& wrong :
+       {infoOf(0, 0, 0, 1, 1), infoOf(nan, 0, 0, 1, 1), infoOf(1, 1, 0, 0, 1), infoOf(1, 0, nan, 1, 1),
+        infoOf(1, 0, 0, 2049, 1), infoOf(1, 65537, 0, 65538, 1)})
     EXPECT_TRUE(refused(wrong));
   EXPECT_EQ(gpgpScatterAxioms(nullptr, &count, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(gpgpScatterAxioms(&info, nullptr, nullptr), GPGP_ERROR_INVALID_ARGUMENT);

@@ -166,8 +166,7 @@ GpgpAxiomMeasures onCpu(const FitOptions& options, const BakedGraph& grammar, co
   const spawn::Derivation all = spawn::derive(grammar.words, std::span(&axiom, 1), how);
   std::array<uint32_t, shader::kMeasuredWords> words{};
   cells.assign(std::max<size_t>(wanted.bits.size(), 1), 0);
-  for (const GpgpInstance& instance : all.instances)
-    spawn::measure(*measuring, instance, words.data(), cells.data());
+  for (const GpgpInstance& instance : all.instances) spawn::measure(*measuring, instance, words.data(), cells.data());
   return spawn::finishMeasures(*measuring, wanted.bits.data(), words.data(), cells.data());
 }
 
@@ -350,8 +349,9 @@ Work addFit(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of the search, and of the axiom where seed does not vary")
       ->capture_default_str();
-  command->add_option("--max-depth", options->maxDepth,
-                      "Budget: how deep rules nest in themselves (0: the library's default)")
+  command
+      ->add_option("--max-depth", options->maxDepth,
+                   "Budget: how deep rules nest in themselves (0: the library's default)")
       ->check(CLI::Range(0u, 65535u));
   command->add_option("--image", options->image, "Write a picture of what was found")
       ->check(pngFile())

@@ -50,12 +50,11 @@ std::vector<GpgpAxiomMeasures> FitScorer::measure(const std::vector<GpgpAxiom>& 
     info.hostAxioms = axioms.data() + all.size();
     info.axiomCount = static_cast<uint32_t>(std::min<size_t>(axioms.size() - all.size(), mostAxioms_));
     info.measures = &measures_;
-    const auto measured =
-        session_.measure(*spawner_, "fit", 1,
-                         [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
-                           info.base = base;
-                           return spawner_->recordPrepare(commands, frame, info);
-                         });
+    const auto measured = session_.measure(
+        *spawner_, "fit", 1, [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
+          info.base = base;
+          return spawner_->recordPrepare(commands, frame, info);
+        });
     const GpgpSpawnReport& report = measured.report;
     ++recordings_;
     if (!measured.times.totals.empty()) milliseconds_ += measured.times.totals.back();

@@ -38,13 +38,13 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
       ->delimiter(',')
       ->type_name("X,Z")
       ->check(within(1e-3, 1e7));
-  command.add_option("--density", options.scatter.density, "A picture over the area: black none of the points, white all")
+  command
+      .add_option("--density", options.scatter.density, "A picture over the area: black none of the points, white all")
       ->needs(scatter)
       ->check(CLI::ExistingFile)
       ->type_name("FILE.png");
   CLI::Option* terrain =
-      command
-          .add_option("--terrain", options.scatter.terrain, "Another one: how high the ground is, black 0")
+      command.add_option("--terrain", options.scatter.terrain, "Another one: how high the ground is, black 0")
           ->needs(scatter)
           ->check(CLI::ExistingFile)
           ->type_name("FILE.png");

@@ -95,8 +95,8 @@ GpgpAxiom propose(const GpgpFit& fit, uint32_t round, uint32_t candidate, const 
   axiom.id = candidate;
   const bool all = round == 0 || fit.method == GPGP_FIT_MONTE_CARLO;
   const uint32_t count = fit.parameterCount;
-  const uint32_t which = std::min(
-      static_cast<uint32_t>(drawn(fit, round, candidate, kWhich) * static_cast<float>(count)), count - 1);
+  const uint32_t which =
+      std::min(static_cast<uint32_t>(drawn(fit, round, candidate, kWhich) * static_cast<float>(count)), count - 1);
   for (uint32_t i = 0; i < count; ++i) {
     const GpgpFitParameter& parameter = fit.parameters[i];
     if (all) {
@@ -104,8 +104,7 @@ GpgpAxiom propose(const GpgpFit& fit, uint32_t round, uint32_t candidate, const 
       continue;
     }
     const float value = valueOf(*current, parameter.field);
-    const bool changes =
-        i == which || drawn(fit, round, candidate, kChange + i) * static_cast<float>(2 * count) < 1;
+    const bool changes = i == which || drawn(fit, round, candidate, kChange + i) * static_cast<float>(2 * count) < 1;
     set(axiom, parameter.field, changes ? moved(fit, round, candidate, i, value) : value);
   }
   const float rise = 0.5f * (axiom.size[1] - fit.base.size[1]);
@@ -137,7 +136,8 @@ double scoreOf(const GpgpFitTarget& target, const GpgpAxiomMeasures& measures) {
     if (target.sumWeights[m] != 0)
       score += target.sumWeights[m] * std::abs(static_cast<double>(measures.sums[m]) / 65536 - target.sums[m]);
   if (target.occupancyWeight != 0) {
-    const double wrong = static_cast<double>(measures.occupiedCells) + target.targetCells - 2.0 * measures.matchingCells;
+    const double wrong =
+        static_cast<double>(measures.occupiedCells) + target.targetCells - 2.0 * measures.matchingCells;
     score += target.occupancyWeight * wrong / std::max(target.targetCells, 1u);
   }
   return score;
