@@ -97,6 +97,8 @@ typedef struct GpgpEvaluationInfo {
   GpgpIsCancelledFn isCancelled; /**< Optional. */
   void* cancelUserData;
   const GpgpSpawnCamera* camera; /**< As GpgpSpawnInfo::camera. */
+  /** Optional. Fills GpgpEvaluationResult::measures, of the kept terminals. Not with GPGP_EVALUATION_COUNT_ONLY. */
+  const GpgpMeasureInfo* measures;
 } GpgpEvaluationInfo;
 #define GPGP_EVALUATION_INFO_INIT GPGP_INIT(GpgpEvaluationInfo, GPGP_STRUCTURE_EVALUATION_INFO)
 
@@ -136,6 +138,8 @@ typedef struct GpgpEvaluationResult {
   uint32_t droppedShapes, unfinishedShapes, depth; /**< As in GpgpSpawnReport. */
   uint32_t keyHash[2];                             /**< As in GpgpSpawnReport: equal to that of the GPU. */
   uint32_t rangeCount;                             /**< Ranges that were used. */
+  const GpgpAxiomMeasures*
+      measures; /**< [axiomCount], as a spawner measures. NULL without GpgpEvaluationInfo::measures. */
 } GpgpEvaluationResult;
 #define GPGP_EVALUATION_RESULT_INIT GPGP_INIT(GpgpEvaluationResult, GPGP_STRUCTURE_EVALUATION_RESULT)
 

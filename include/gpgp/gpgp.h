@@ -4,8 +4,10 @@
 #include <gpgp/atlas.h>
 #include <gpgp/core.h>
 #include <gpgp/evaluator.h>
+#include <gpgp/fit.h>
 #include <gpgp/lottie.h>
 #include <gpgp/lsystem.h>
+#include <gpgp/scatter.h>
 #include <gpgp/spawn.h>
 #include <gpgp/spawn_builder.h>
 #include <gpgp/text.h>

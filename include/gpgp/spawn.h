@@ -307,6 +307,11 @@ typedef struct GpgpSpawnerCreateInfo {
   /** Axioms of one recording that come from GpgpSpawnInfo::hostAxioms. 0: none. At most 2^24. 96 bytes of host-visible
    *  memory each, for every recording that can be in flight. */
   uint32_t maxHostAxioms;
+  /** Axioms of one recording that GpgpSpawnInfo::measures is asked of. 0: none. At most 2^20. 72 bytes of host memory
+   *  each, and as much of host-visible memory, for every recording that can be in flight. */
+  uint32_t maxMeasuredAxioms;
+  /** Words of 32 cells of GpgpOccupancy that each of these axioms has. At most 1024. 4 bytes each, for every axiom. */
+  uint32_t maxOccupancyWords;
 } GpgpSpawnerCreateInfo;
 #define GPGP_SPAWNER_CREATE_INFO_INIT GPGP_INIT(GpgpSpawnerCreateInfo, GPGP_STRUCTURE_SPAWNER_CREATE_INFO)
 
@@ -365,6 +370,55 @@ typedef struct GpgpAxiomRange {
   uint32_t reserved; /**< 0. */
 } GpgpAxiomRange;
 
+/** What a measure multiplies for each terminal: bits. 0: the number 1, so that terminals are counted. */
+typedef uint32_t GpgpMeasureFactors;
+enum {
+  GPGP_MEASURE_X = 1, /**< GpgpInstance::size[0], in metres. X and Y: the area of a facade. X, Y and Z: a volume. */
+  GPGP_MEASURE_Y = 2,
+  GPGP_MEASURE_Z = 4,
+  GPGP_MEASURE_ATTRIBUTE = 8 /**< GpgpInstance::attribute, which is the value of a `report` of .cga files. */
+};
+
+/** A number that is summed up over the terminals of each axiom. */
+typedef struct GpgpMeasure {
+  uint32_t terminal; /**< Index into gpgpGetGrammarTerminals, or GPGP_ALL_TERMINALS. */
+  GpgpMeasureFactors factors;
+} GpgpMeasure;
+#define GPGP_ALL_TERMINALS 0xffffffffu
+#define GPGP_MAX_MEASURES 4
+
+/** A grid of cells in the world, of which each axiom's terminals occupy some. An axis of one cell makes it a silhouette
+ *  seen along that axis. A terminal occupies the cells whose centres lie in its axis-aligned box; along an axis of one
+ *  cell, the cell that its box touches. */
+typedef struct GpgpOccupancy {
+  GpgpSpawnBounds box; /**< World space. min is less than max on each axis. */
+  uint32_t cells[3];   /**< Along x, y and z, at least 1. Of a row along x, each started word of 32 cells counts; at
+                        *   most 1024 words, as 128 x 256 cells have. */
+  /** What should be occupied: uint32_t[cells[2]][cells[1]][(cells[0] + 31) / 32], cell x in bit x % 32 of word x / 32.
+   *  @lifetime call */
+  const uint32_t* target;
+} GpgpOccupancy;
+
+/** What is measured of each axiom. */
+typedef struct GpgpMeasureInfo {
+  const GpgpMeasure* measures;    /**< @lifetime call */
+  uint32_t measureCount;          /**< At most GPGP_MAX_MEASURES. */
+  const GpgpOccupancy* occupancy; /**< Optional. @lifetime call */
+} GpgpMeasureInfo;
+
+/** What was measured of an axiom. 72 bytes. It does not depend on any order of execution. Numbers are equal on all
+ *  devices and on the CPU; boxes, and cells at their very borders, as far as transforms are. */
+typedef struct GpgpAxiomMeasures {
+  GpgpSpawnBounds bounds; /**< Around the axiom's terminals. */
+  uint32_t terminals;
+  /** Values that were no number, and count as 0, or beyond 2^23 to either side, and count as that. */
+  uint32_t clamped;
+  /** By measure, in units of 1 / 65536; of each value, what lies beyond them is cut off. */
+  int64_t sums[GPGP_MAX_MEASURES];
+  uint32_t occupiedCells; /**< Cells of GpgpOccupancy that the axiom's terminals occupy. */
+  uint32_t matchingCells; /**< Those of them that the target holds. */
+} GpgpAxiomMeasures;
+
 typedef uint64_t GpgpSpawnFlags;
 /** Every bucket has a region of the output. GpgpSpawnInfo::draws says where each region begins. A region ends where
  *  that of the next bucket begins, the last one at the end of the buffer. Regions lie in the order of the buckets. */
@@ -388,7 +442,7 @@ typedef struct GpgpSpawnInfo {
    *  `instances` in what the engine binds. Without GPGP_SPAWN_REGIONS, and not for vertices. */
   uint32_t firstInstance;
   /** Output, GpgpInstance[], or GpgpCompactInstance[] with GPGP_SPAWNER_COMPACT. Its size is the budget. STORAGE usage.
-   * NULL: the recording only counts, and needs draws. */
+   * NULL: the recording only counts, and needs draws or measures. */
   GpgpBuffer instances;
   const GpgpVertexOutput* vertices; /**< Output of spawners that were created for vertices, instead of instances. */
   /** Output, optional. VkDrawIndexedIndirectCommand[buckets], one for each bucket. STORAGE usage. Fields that are not
@@ -422,6 +476,11 @@ typedef struct GpgpSpawnInfo {
    *  Ranges must not overlap. What ends behind the buffer does not fit. STORAGE usage. Without draws, bounds and
    * regions, and not in spawners that are ordered, compact or for vertices. */
   GpgpBuffer ranges;
+  /** Optional. Measures each axiom. The results come with the report (GpgpSpawnReport::axioms), when the frame is safe:
+   *  nothing waits. maxTerminals bounds the recording; where it is too small, the report says BUDGET_EXCEEDED, and some
+   *  terminals were not measured. Vertices must be written. Not with ranges, nor, unless the spawner is ordered, with
+   *  GPGP_SPAWN_REGIONS. @lifetime call */
+  const GpgpMeasureInfo* measures;
 } GpgpSpawnInfo;
 #define GPGP_SPAWN_INFO_INIT GPGP_INIT(GpgpSpawnInfo, GPGP_STRUCTURE_SPAWN_INFO)
 
@@ -457,6 +516,10 @@ typedef struct GpgpSpawnReport {
   uint32_t colliders;       /**< Shapes that Collider had to register. With this maxColliders all would have fitted. */
   /** At most colliders. Less only with BUDGET_EXCEEDED: IfCollides did not see the other colliders. */
   uint32_t collidersKept;
+  /** What GpgpSpawnInfo::measures asked for, in the order of the axioms; NULL without measures, and of what was not
+   *  executed. Valid until the next gpgpAdvance. */
+  const GpgpAxiomMeasures* axioms;
+  uint32_t axiomCount;
 } GpgpSpawnReport;
 #define GPGP_SPAWN_REPORT_INIT GPGP_INIT(GpgpSpawnReport, GPGP_STRUCTURE_SPAWN_REPORT)
 

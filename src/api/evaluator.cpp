@@ -126,6 +126,8 @@ Result<void> check(const GpgpEvaluationInfo& info) {
   if (info.axiomCount && !info.axioms) return invalid("axioms is NULL, axiomCount is not 0");
   if (info.keyCount && !info.keys) return invalid("keys is NULL, keyCount is not 0");
   if (info.flags & ~(GPGP_EVALUATION_COUNT_ONLY | GPGP_EVALUATION_BOUNDS)) return invalid("flags has unknown bits");
+  if (info.measures && (info.flags & GPGP_EVALUATION_COUNT_ONLY))
+    return invalid("measures is set, but flags has GPGP_EVALUATION_COUNT_ONLY");
   if (info.maxDepth > 65535) return invalid("maxDepth is at most 65535");
   if (info.maxShapesPerAxiom > 1u << 31) return invalid("maxShapesPerAxiom is at most 2147483648");
   for (int axis = 0; info.region && axis < 3; ++axis)

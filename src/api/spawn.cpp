@@ -1,5 +1,6 @@
 // The C functions of spawn.h that belong to the run time.
 #include "api/check.h"
+#include "spawn/outputs/measure.h"
 #include "spawn/schedule/spawner.h"
 
 #include <gpgp/spawn.h>
@@ -96,6 +97,10 @@ GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext handle, const GpgpSpawnerCrea
     if (info->maxHostAxioms > (1u << 24))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxHostAxioms is at most 16777216");
     if (info->maxRounds > 256) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxRounds is at most 256");
+    if (info->maxMeasuredAxioms > (1u << 20))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxMeasuredAxioms is at most 1048576");
+    if (info->maxOccupancyWords > shader::kMostGridWords)
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxOccupancyWords is at most %u", shader::kMostGridWords);
     auto made = spawn::Spawner::create(**context, *info);
     if (!made) return made.error();
     *spawner = adopt<GpgpRecorder>(**context, std::move(*made));
@@ -157,7 +162,12 @@ Result<void> checkOutput(const spawn::Spawner& spawner, const GpgpSpawnInfo& inf
   if (info.firstInstance && (regions || spawner.vertices()))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "firstInstance is %u; with %s it must be 0", info.firstInstance,
                      regions ? "GPGP_SPAWN_REGIONS" : "vertices");
-  if (counts && !info.draws.buffer)
+  if (info.measures && (info.ranges.buffer || (regions && !spawner.ordered()) || (spawner.vertices() && counts)))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "measures is set, and %s",
+                     info.ranges.buffer ? "so is ranges.buffer"
+                     : regions          ? "GPGP_SPAWN_REGIONS, of a spawner that is not ordered"
+                                        : "vertices->vertices.buffer is NULL");
+  if (counts && !info.draws.buffer && !info.measures)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.buffer is NULL, and draws.buffer, where a recording could count",
                      spawner.vertices() ? "vertices->vertices" : "instances");
   if (regions && counts)

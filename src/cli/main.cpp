@@ -62,7 +62,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "gpgp " + std::to_string(GPGP_VERSION_MAJOR) + "." +
                                         std::to_string(GPGP_VERSION_MINOR) + "." + std::to_string(GPGP_VERSION_PATCH));
   std::vector<Subcommand> subcommands;
-  subcommands.reserve(8); // options are bound by address
+  subcommands.reserve(9); // options are bound by address
   const auto add = [&](Work (*adder)(CLI::App&), bool records = false) {
     Subcommand& subcommand = subcommands.emplace_back();
     subcommand.work = adder(app);
@@ -73,6 +73,7 @@ int run(int argc, char** argv) {
   add(addInfo);
 #ifdef GPGP_CLI_SPAWN
   add(addSpawn, true);
+  add(addFit, true);
   add(addGraph);
   add(addTune);
 #endif

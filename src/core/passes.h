@@ -96,8 +96,11 @@ struct PassList {
   ResourceIndex report = UINT32_MAX; ///< a scratch resource: its first reportBytes are copied to the host at the end,
                                      ///< unless passes write it to a resource of kind report
   uint32_t reportBytes = 0;
-  uint32_t groupCounts = 0;  ///< how many workgroup counts a recording gives
-  uint32_t texturePages = 1; ///< a recording's textures at most: as many times those of the list
+  ResourceIndex readBack = UINT32_MAX; ///< a scratch resource: as much as a recording says (Record::readBackBytes) of
+                                       ///< its first readBackBytes comes to the host behind the report
+  uint32_t readBackBytes = 0;          ///< a multiple of 8
+  uint32_t groupCounts = 0;            ///< how many workgroup counts a recording gives
+  uint32_t texturePages = 1;           ///< a recording's textures at most: as many times those of the list
 
   // worked out by finish()
   std::pmr::vector<VkDeviceSize> scratchOffsets; ///< by resource

@@ -184,8 +184,8 @@ Result<uint32_t> Recorder::acquire() const {
   return free;
 }
 
-void Recorder::take(uint32_t slot, uint64_t tag, bool report) {
-  slots_[slot] = {context.current(), tag, nextMarker_, report, report, {}};
+void Recorder::take(uint32_t slot, uint64_t tag, bool report, uint32_t readBackBytes) {
+  slots_[slot] = {context.current(), tag, nextMarker_, report, report, readBackBytes, {}};
   if (++nextMarker_ == 0) nextMarker_ = 1;
 }
 
@@ -350,7 +350,7 @@ Result<void> Recorder::record(const Record& record) {
   if (!acquired) return acquired.error();
   const uint32_t slot = *acquired;
   std::byte* to = constants();
-  take(slot, record.info->tag, true);
+  take(slot, record.info->tag, true, record.readBackBytes);
   slots_[slot].counts = !record.nothing;
   slots_[slot].note = record.note;
 
@@ -502,12 +502,17 @@ Result<void> Recorder::record(const Record& record) {
       vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps.queryPool, query++);
   }
 
-  if (passes_.reportBytes && !record.reports) {
+  if ((passes_.reportBytes && !record.reports) || record.readBackBytes) {
     const VkMemoryBarrier counted{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, kWorkWrites, VK_ACCESS_TRANSFER_READ_BIT};
     vk.CmdPipelineBarrier(cmd, kWorkStages, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &counted, 0, nullptr, 0, nullptr);
-    const auto [source, sourceOffset] = place(passes_.report);
-    const VkBufferCopy region{sourceOffset, slot * reportStride_, passes_.reportBytes};
-    vk.CmdCopyBuffer(cmd, source, reports_.handle(), 1, &region);
+    const auto copy = [&](ResourceIndex resource, VkDeviceSize offset, VkDeviceSize bytes) {
+      if (!bytes) return;
+      const auto [source, sourceOffset] = place(resource);
+      const VkBufferCopy region{sourceOffset, slot * reportStride_ + offset, bytes};
+      vk.CmdCopyBuffer(cmd, source, reports_.handle(), 1, &region);
+    };
+    copy(passes_.report, 0, record.reports ? 0 : passes_.reportBytes);
+    copy(passes_.readBack, readBackAt(), record.readBackBytes);
   }
   edgeBarrier(record, false);
   endLabel(cmd);

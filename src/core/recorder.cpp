@@ -5,7 +5,6 @@
 
 namespace gpgp::core {
 namespace {
-constexpr VkDeviceSize kMarkerBytes = 16;
 constexpr VkDeviceSize kPushConstantBytes = 128;
 
 VkShaderStageFlags shaderStages(bool draws) {
@@ -19,7 +18,7 @@ Recorder::Recorder(Context& ctx, Kind recorderKind, const GpgpRecorderCreateInfo
     : Object(ctx, recorderKind, info.label), service_(service), queueFamily_(info.queueFamily),
       queueFlags_(info.queueFlags), engineScratch_(info.engineScratch != VK_FALSE), passes_(&ctx.host()),
       sets_(&ctx.host()), textureSets_(&ctx.host()), pipelines_(&ctx.host()), slots_(&ctx.host()), ran_(&ctx.host()),
-      harvested_(&ctx.host()), queue_(&ctx.host()) {}
+      harvested_(&ctx.host()), readBacks_(&ctx.host()), queue_(&ctx.host()) {}
 
 void Recorder::unlink() {
   if (!linked_) return;
@@ -161,7 +160,7 @@ Result<void> Recorder::init(PassList passes, std::span<const DrawShaders> draws)
   if (!constants) return constants.error();
   constants_ = std::move(*constants);
   const VkDeviceSize reportAlignment = std::max<VkDeviceSize>(64, device.limits.minStorageBufferOffsetAlignment);
-  reportStride_ = (passes_.reportBytes + kMarkerBytes + reportAlignment - 1) / reportAlignment * reportAlignment;
+  reportStride_ = (readBackAt() + passes_.readBackBytes + reportAlignment - 1) / reportAlignment * reportAlignment;
   auto reports =
       Buffer::create(device, context.gpu(), service_, "reports", reportStride_ * slotCount,
                      VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryPlace::readBack);
@@ -171,6 +170,7 @@ Result<void> Recorder::init(PassList passes, std::span<const DrawShaders> draws)
   slots_.resize(slotCount);
   queue_.resize(slotCount);
   harvested_.resize(size_t(slotCount) * (passes_.reportBytes / 4));
+  readBacks_.resize(size_t(slotCount) * (passes_.readBackBytes / 8));
   pipelines_.resize(passes_.shaders.size(), VK_NULL_HANDLE);
   ran_.resize(passes_.passes.size());
 
@@ -415,8 +415,13 @@ void Recorder::advance() {
         std::memcpy(copy, data, passes_.reportBytes);
       else
         std::fill_n(copy, words, 0u);
-      queue_[place] = {
-          {ran ? GPGP_SUCCESS : GPGP_NOT_EXECUTED, oldest->tag, oldest->frame}, {copy, words}, oldest->note};
+      auto* const behind = reinterpret_cast<std::byte*>(readBacks_.data()) + place * passes_.readBackBytes;
+      const uint32_t bytes = ran ? oldest->readBackBytes : 0;
+      if (bytes) std::memcpy(behind, data + readBackAt(), bytes);
+      queue_[place] = {{ran ? GPGP_SUCCESS : GPGP_NOT_EXECUTED, oldest->tag, oldest->frame},
+                       {copy, words},
+                       oldest->note,
+                       {behind, bytes}};
       harvested(queue_[place]);
     }
     *oldest = {};

@@ -55,6 +55,7 @@ struct Record {
   /// report's words are 0.
   bool nothing = false;
   std::array<uint32_t, 4> note = {}; ///< returned with the report
+  uint32_t readBackBytes = 0;        ///< of PassList::readBack, a multiple of 8; 0: none
 };
 
 struct DrawRecord {
@@ -71,6 +72,7 @@ struct RawReport {
   GpgpReportHeader header{}; ///< status SUCCESS or NOT_EXECUTED
   std::span<const uint32_t> words;
   std::array<uint32_t, 4> note = {}; ///< Record::note
+  std::span<const std::byte> readBack; ///< Record::readBackBytes; none of what was not executed
 };
 
 /// Whether a pipeline made for one target can draw into the other.
@@ -117,7 +119,7 @@ public:
   /// Whether a thread is using it (RecorderUse).
   std::atomic<bool> busy{false};
 
-  /// The oldest report not yet taken, if any. The words are valid until the next advance.
+  /// The oldest report not yet taken, if any. What it refers to is valid until the next advance.
   bool takeReport(RawReport& report);
 
   void advance();
@@ -149,6 +151,7 @@ private:
     uint64_t tag = 0;
     uint32_t marker = 0;                 ///< what the GPU will have written; 0: free
     bool report = false, counts = false; ///< counts: the report has words
+    uint32_t readBackBytes = 0;
     std::array<uint32_t, 4> note = {};
   };
   struct Target {
@@ -157,7 +160,7 @@ private:
   };
 
   Result<uint32_t> acquire() const;
-  void take(uint32_t slot, uint64_t tag, bool report);
+  void take(uint32_t slot, uint64_t tag, bool report, uint32_t readBackBytes = 0);
   void recordNothing(const Record& record, uint32_t slot) const;
   void writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
                         VkDeviceSize scratchOffset, bool reports) const;
@@ -186,11 +189,14 @@ private:
   std::atomic<bool> ready_{false};
   Buffer scratch_, constants_, reports_;
   VkDeviceSize reportStride_ = 0;
+  static constexpr VkDeviceSize kMarkerBytes = 16;
+  VkDeviceSize readBackAt() const { return passes_.reportBytes + kMarkerBytes; } // in a slot of reports_
   static constexpr VkDeviceSize kUnusedBytes = 256;
   VkDeviceSize unusedOffset_ = 0; ///< behind the constants: what recordings leave out and passes could write
   std::pmr::vector<InFlight> slots_;
   std::pmr::vector<uint8_t> ran_;        // by pass
   std::pmr::vector<uint32_t> harvested_; // words of harvested reports, as many as queue_ has places
+  std::pmr::vector<uint64_t> readBacks_; // what came behind them
   std::pmr::vector<RawReport> queue_;    // ring of harvested reports
   size_t queueHead_ = 0, queueCount_ = 0;
   uint32_t nextMarker_ = 1;

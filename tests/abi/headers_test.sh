@@ -30,7 +30,7 @@ for pair in "$@"; do
   for compiler in "$cc" "$cxx"; do
     command -v "$compiler" >/dev/null || { echo "no compiler $compiler" >&2; exit 1; }
   done
-  for header in core spawn spawn_builder lsystem evaluator tiles text ui vector lottie visibility gpgp; do
+  for header in core spawn spawn_builder lsystem evaluator tiles fit scatter text ui vector lottie visibility gpgp; do
     echo "#include <gpgp/$header.h>" >"$scratch/$header.c"
     # Once more after all others, so that no header minds another before it.
     printf '#include <gpgp/gpgp.h>\n#include <gpgp/%s.h>\n' "$header" >>"$scratch/$header.c"
@@ -40,7 +40,7 @@ for pair in "$@"; do
   for standard in c99 c11 c17; do compile "$standard" c "$cc" "$sources/structs.c" structs; done
   for standard in c++11 c++17 c++20; do compile "$standard" c++ "$cxx" "$sources/structs.c" structs; done
   for standard in c++17 c++20; do compile "$standard" c++ "$cxx" "$sources/wrapper.cpp" gpgp/gpgp.hpp; done
-  for header in core spawn lsystem evaluator tiles text ui vector lottie visibility; do # each alone
+  for header in core spawn lsystem evaluator tiles fit scatter text ui vector lottie visibility; do # each alone
     echo "#include <gpgp/$header.hpp>" >"$scratch/$header.cpp"
     for standard in c++17 c++20; do compile "$standard" c++ "$cxx" "$scratch/$header.cpp" "gpgp/$header.hpp"; done
   done

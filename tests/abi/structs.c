@@ -6,6 +6,7 @@
 GPGP_SIZE_IS(GpgpAxiom, 96);
 GPGP_SIZE_IS(GpgpInstance, 96);
 GPGP_SIZE_IS(GpgpCompactInstance, 32);
+GPGP_SIZE_IS(GpgpAxiomMeasures, 72);
 GPGP_SIZE_IS(GpgpVisibilityDraw, 64);
 GPGP_SIZE_IS(GpgpTriangleSize, 12);
 GPGP_SIZE_IS(GpgpResult, 4);

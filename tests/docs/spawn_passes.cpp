@@ -9,6 +9,7 @@ spawn::SpawnerSizes sizesOf(bool vertices, bool colliders) {
   sizes.maxColliders = colliders ? 4096 : 0;
   sizes.rounds = 4;
   sizes.ordered = true;
+  sizes.maxMeasuredAxioms = vertices ? 0 : 64;
   if (vertices) sizes.layout.strideWords = 8;
   return sizes;
 }

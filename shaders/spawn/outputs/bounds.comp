@@ -15,24 +15,17 @@ layout(set = 0, binding = kBindBoundKeys, std430) buffer BoundKeys { uint boundK
 layout(local_size_x = 64) in;                        // kSpawnGroupSize
 layout(constant_id = 0) const bool decodes = false; // what has been gathered to the engine's buffer
 #include "spawn/shared/shape.h"
+#include "spawn/outputs/boxes.h"
 #include "spawn/outputs/regions.glsl"
 
 const uint kKeys = 512 * kBoundWords;
 shared uint keys[decodes ? 1 : kKeys];
 
-uint keyOf(float value) {
-  const uint word = floatBitsToUint(value);
-  return (word >> 31) != 0 ? ~word : word | 0x80000000u;
-}
-float valueOf(uint key) { return uintBitsToFloat((key >> 31) != 0 ? key & 0x7fffffffu : ~key); }
-
 void decode(uint buckets) {
-  const float infinity = uintBitsToFloat(0x7f800000u);
   for (uint i = gl_LocalInvocationIndex; i < buckets * 3; i += kSpawnGroupSize) {
     const uint at = i / 3 * kBoundWords + i % 3;
-    const uint low = boundKeys[at], high = boundKeys[at + 3];
-    bounds[at] = low == 0 ? infinity : valueOf(~low);
-    bounds[at + 3] = high == 0 ? -infinity : valueOf(high);
+    bounds[at] = lowOf(boundKeys[at]);
+    bounds[at + 3] = highOf(boundKeys[at + 3]);
   }
 }
 
@@ -47,10 +40,8 @@ void raise(uint at, uint key) {
 /// rows: of the unit shape's cube to the world.
 void grow(uint bucket, vec4 rows[3], bool isFlat) {
   for (uint axis = 0; axis < 3; ++axis) {
-    const vec4 row = rows[axis];
-    const float reach = 0.5 * (abs(row.x) + abs(row.y) + (isFlat ? 0.0 : abs(row.z)));
-    raise(bucket * kBoundWords + axis, ~keyOf(row.w - reach));
-    raise(bucket * kBoundWords + axis + 3, keyOf(row.w + reach));
+    raise(bucket * kBoundWords + axis, ~boundKey(boxLow(rows[axis], isFlat)));
+    raise(bucket * kBoundWords + axis + 3, boundKey(boxHigh(rows[axis], isFlat)));
   }
 }
 

@@ -35,9 +35,10 @@ uint placedIn(uint bucket) {
 void main() {
   const uint lane = gl_LocalInvocationIndex;
   const bool regions = record.regions != 0;
-  const bool counted = record.terminalsTo == kToCounts;
+  const bool measured = !quads && record.instanceCapacity == 0 && record.terminalsTo == kToKeyedRecords;
+  const bool counted = record.terminalsTo == kToCounts || measured; // its records are for nothing else
   const bool keyed = record.terminalsTo == kToKeyedRecords;
-  const bool sorted = !quads && keyed;
+  const bool sorted = !quads && keyed && !counted;
   const uint kept = sorted ? min(state.terminals, record.maxTerminals) : state.terminals;
   const bool lost = quads && !counted; // some may be, whose quads nobody made room for
   const uint fitting = record.byAxiom != 0 ? kept - state.instancesWritten : min(kept, record.instanceCapacity);
@@ -103,7 +104,8 @@ void main() {
       state.instancesWritten = allWritten;
       if (sorted) needed = state.terminals;
     }
-    state.exceeded = !counted && allWritten < needed ? 1 : 0;
+    const bool lacksRecords = measured && state.terminals > record.maxTerminals;
+    state.exceeded = (!counted && allWritten < needed) || lacksRecords ? 1 : 0;
     dispatchRecords(kept);
     if (record.writeCount != 0) instanceCount = quads ? allWritten * 6 : allWritten;
   }

@@ -43,6 +43,7 @@ CLI::Validator within(double low, double high);
 // One file per subcommand. Each adds itself to the app and returns what it does when chosen.
 Work addInfo(CLI::App& app);
 Work addSpawn(CLI::App& app);
+Work addFit(CLI::App& app);
 Work addGraph(CLI::App& app);
 Work addTune(CLI::App& app);
 Work addVector(CLI::App& app);

@@ -25,6 +25,33 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
                   "Metres between start shapes along lines of GeoJSON (default: their size along X)")
       ->needs("--axiom-file")
       ->check(within(1e-3, 1e9));
+  CLI::Option* scatter = command
+                             .add_option("--scatter", options.scatter.distance,
+                                         "Start shapes at points that are METRES apart at least (a Poisson-disk "
+                                         "pattern), over --area around the origin")
+                             ->type_name("METRES")
+                             ->excludes("--axiom-file")
+                             ->excludes(axioms)
+                             ->check(within(1e-3, 1e6));
+  command.add_option("--area", options.scatter.area, "Metres along X and Z (default 100,100)")
+      ->needs(scatter)
+      ->delimiter(',')
+      ->type_name("X,Z")
+      ->check(within(1e-3, 1e7));
+  command
+      .add_option("--density", options.scatter.density, "A picture over the area: black none of the points, white all")
+      ->needs(scatter)
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE.png");
+  CLI::Option* terrain =
+      command.add_option("--terrain", options.scatter.terrain, "Another one: how high the ground is, black 0")
+          ->needs(scatter)
+          ->check(CLI::ExistingFile)
+          ->type_name("FILE.png");
+  command.add_option("--terrain-height", options.scatter.terrainHeight, "Metres that white is high")
+      ->needs(terrain)
+      ->check(within(-1e5, 1e5))
+      ->capture_default_str();
   command
       .add_option_function<std::string>(
           "--axiom-size",
@@ -36,6 +63,7 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
       ->type_name("X,Y,Z");
   command.add_option("--spacing", options.spacing, "Distance of the axioms in metres (default: 1.5 times their width)")
       ->excludes("--axiom-file")
+      ->excludes(scatter)
       ->check(within(1e-6, 1e9));
   command.add_option("--seed", options.seed, "Random seed; axiom i has seed S + i")->capture_default_str();
   addVariables(command, options.set);
@@ -166,6 +194,7 @@ Examples:
   gpgp spawn tower.pga --set floors=12 --seed 7 --image tower.png --out tower.glb
   gpgp spawn town.pga --axiom-file lots.csv             x,z,rotation,size_x,size_y,size_z,seed,rule on the first line;
                                                         also y, qx to qw, m00 to m23, shape, attribute
+  gpgp spawn wood.pga --scatter 6 --area 400,400 --axiom-size 7,10,7 --density wood.png --terrain hills.png
   gpgp spawn house.pga tree.pga --axiom-file lots.csv   as one grammar; in the rule column: house, tree, house.Wall
   gpgp spawn old=a/house.pga new=b/house.pga            two files of one name; in the rule column: old, new
   gpgp spawn castle.gml --axiom-size 40,12,40 --start roundTower    a program; it starts at its axiom, or at a rule

@@ -1,6 +1,7 @@
 // What `gpgp spawn` was asked for.
 #pragma once
 #include "cli/shared/command.h"
+#include "cli/spawn/scattered.h"
 #include "spawn/codegen/schedules.h"
 
 #include <array>
@@ -15,6 +16,7 @@ struct SpawnOptions {
   std::array<float, 3> size{1, 1, 1};
   float spacing = 0;
   std::string axiomFile;
+  ScatterOptions scatter;
   std::vector<std::string> set;
   std::string start, style;
   std::vector<std::string> attributes;

@@ -326,6 +326,9 @@ Changes change(const SpawnOptions& options, const std::vector<GpgpAxiom>& axioms
 }
 
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
+  if (options.scatter.distance > 0 && std::any_of(options.grammars.begin(), options.grammars.end(),
+                                                  [](const auto& file) { return isCga(file) || isLsystem(file); }))
+    throw Usage("--scatter is for .pga and .gml files, and for baked grammars");
   if (std::any_of(options.grammars.begin(), options.grammars.end(), isCga)) return spawnFile(options, common);
   if (!options.style.empty() || !options.attributes.empty() || options.geographic || options.maxFaces ||
       options.maxVertices || options.maxGeometry || options.maxWork)
@@ -344,8 +347,10 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
       options.start.empty() ? grammar.starts() : std::vector{startNamed(grammar, options.start)}, options.interval};
   const uint32_t grammarCount = static_cast<uint32_t>(defaults.starts.size());
   const std::vector<GpgpAxiom> start =
-      options.axiomFile.empty() ? axiomGrid(options.axioms ? options.axioms : grammarCount, options.spacing, defaults)
-                                : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
+      !options.axiomFile.empty() ? readAxioms(options.axiomFile, grammar.namedStarts(), defaults)
+      : options.scatter.distance > 0.0f
+          ? scatterAxioms(options.scatter, defaults)
+          : axiomGrid(options.axioms ? options.axioms : grammarCount, options.spacing, defaults);
   Session session(common);
   const Slices slices = slicesFor(options, start, graph, session);
   std::optional<GpgpSpawnCamera> camera;

@@ -1,6 +1,7 @@
 #include "spawn/evaluator/evaluation.h"
 
 #include "spawn/schedule/camera.h"
+#include "spawn/schedule/measuring.h"
 
 #include <cmath>
 #include <limits>
@@ -44,6 +45,8 @@ struct Task {
   WalkOptions options;
   uint64_t maxShapes;
   GpgpEvaluatedAxiom* axioms;
+  const Measuring* measuring; ///< null: nothing is measured
+  GpgpAxiomMeasures* measures;
   LinkedColliders linked;
   std::atomic<bool> cancelled{false}, outOfMemory{false};
 
@@ -55,12 +58,11 @@ struct Task {
 
 GpgpSpawnBounds boundsOf(const GpgpInstance& instance) {
   GpgpSpawnBounds box;
-  for (int axis = 0; axis < 3; ++axis) { // as outputs/bounds.comp does
-    const float* row = instance.transform + 4 * axis;
-    const float reach =
-        0.5f * (std::abs(row[0]) + std::abs(row[1]) + (instance.size[2] == 0 ? 0.0f : std::abs(row[2])));
-    box.min[axis] = row[3] - reach;
-    box.max[axis] = row[3] + reach;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float* of = instance.transform + 4 * axis;
+    const vec4 row(of[0], of[1], of[2], of[3]);
+    box.min[axis] = boxLow(row, instance.size[2] == 0);
+    box.max[axis] = boxHigh(row, instance.size[2] == 0);
   }
   return box;
 }
@@ -68,7 +70,7 @@ GpgpSpawnBounds boundsOf(const GpgpInstance& instance) {
 class AxiomRange final : public Store {
 public:
   explicit AxiomRange(std::pmr::memory_resource& memory)
-      : memory_(&memory), instances_(&memory), words_(&memory), segments_(&memory) {}
+      : memory_(&memory), instances_(&memory), words_(&memory), segments_(&memory), grid_(&memory) {}
   virtual ~AxiomRange() = default;
 
   void begin(Task& task, uint32_t first, uint32_t count) {
@@ -108,6 +110,7 @@ public:
       axiom.indexCount = axiom.vertexCount / 4 * 6;
       if (axiom.droppedShapes || axiom.unfinishedShapes) axiom.status = GPGP_BUDGET_EXCEEDED;
       if (task_->info.flags & GPGP_EVALUATION_BOUNDS) axiom.bounds = boundsOfAll(axiom);
+      if (task_->measuring) task_->measures[a] = measuresOf(axiom);
     }
   }
 
@@ -222,6 +225,16 @@ private:
     return all;
   }
 
+  GpgpAxiomMeasures measuresOf(const GpgpEvaluatedAxiom& axiom) {
+    const Measuring& measuring = *task_->measuring;
+    grid_.assign(measuring.gridWords, 0);
+    std::array<uint32_t, kMeasuredWords> words{};
+    for (uint32_t i = 0; i < axiom.instanceCount; ++i)
+      measure(measuring, axiom.instances[i], words.data(), grid_.data());
+    const uint32_t* const target = measuring.gridWords ? task_->info.measures->occupancy->target : nullptr;
+    return finishMeasures(measuring, target, words.data(), grid_.data());
+  }
+
   std::pmr::memory_resource* const memory_;
   Task* task_ = nullptr;
   uint32_t first_ = 0, count_ = 0;
@@ -229,15 +242,18 @@ private:
   Pieces<GpgpInstance> instances_;
   Pieces<uint32_t> words_;
   std::pmr::vector<Segment> segments_;
+  std::pmr::vector<uint32_t> grid_; // of the axiom that is measured
   std::optional<Walker> walker_;
 };
 
 Evaluation::Evaluation(const EvaluatorGrammar& grammar, const GpgpJobSystem& jobs, core::HostMemory& memory)
-    : grammar_(grammar), jobs_(jobs), memory_(memory), ranges_(&memory), axioms_(&memory), indices_(&memory) {}
+    : grammar_(grammar), jobs_(jobs), memory_(memory), ranges_(&memory), axioms_(&memory), measures_(&memory),
+      indices_(&memory) {}
 Evaluation::~Evaluation() = default;
 
 void Evaluation::clear() {
   axioms_.clear();
+  measures_.clear();
   result_ = GPGP_EVALUATION_RESULT_INIT;
 }
 
@@ -258,6 +274,14 @@ core::Result<void> Evaluation::run(const GpgpEvaluationInfo& info, const VertexL
   const TerminalFilter filter(info, &memory_);
   const auto view = viewOf(info.camera);
   if (!view) return view.error();
+  Measuring measuring{};
+  if (info.measures) {
+    const auto checked = measuringOf(*info.measures, static_cast<uint32_t>(grammar_.graph.terminals.size()));
+    if (!checked) return checked.error();
+    measuring = *checked;
+    measures_.resize(info.axiomCount);
+    result_.measures = measures_.data();
+  }
   Task task{grammar_,
             info,
             {.maxDepth = info.maxDepth ? info.maxDepth : 64,
@@ -267,6 +291,8 @@ core::Result<void> Evaluation::run(const GpgpEvaluationInfo& info, const VertexL
              .view = &*view},
             info.maxShapesPerAxiom ? info.maxShapesPerAxiom : 1u << 27,
             axioms_.data(),
+            info.measures ? &measuring : nullptr,
+            measures_.data(),
             LinkedColliders(&memory_)};
   const uint32_t wanted = info.rangeCount ? info.rangeCount : jobs_.parallelFor ? 64 : 1;
   const uint32_t ranges = std::max(1u, std::min(wanted, info.axiomCount));

@@ -10,6 +10,7 @@
 #include <gpgp/evaluator.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstring>
 
@@ -113,6 +114,7 @@ private:
   core::HostMemory& memory_;
   std::pmr::vector<core::Unique<AxiomRange>> ranges_; // more than are used, where an earlier derivation used more
   std::pmr::vector<GpgpEvaluatedAxiom> axioms_;
+  std::pmr::vector<GpgpAxiomMeasures> measures_;
   std::pmr::vector<uint32_t> indices_;
   GpgpEvaluationResult result_ = GPGP_EVALUATION_RESULT_INIT;
 };

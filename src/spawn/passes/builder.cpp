@@ -1,5 +1,6 @@
 #include "spawn/passes/builder.h"
 
+#include "spawn/outputs/measure.h"
 #include "spawn/shared/shape.h"
 
 #include <gpgp/spawn.h>
@@ -43,6 +44,14 @@ PassBuilder::PassBuilder(const SpawnerSizes& spawner, const core::Device& owner,
   list.add({"bound keys", scratch, sizeof(uint32_t) * shader::kMaxBuckets * shader::kBoundWords});
   list.add({"report", core::ResourceKind::report});
   list.add({"ranges", buffer, 0, true});
+  if (sizes.maxMeasuredAxioms) {
+    const VkDeviceSize words = shader::kMeasuredWords + VkDeviceSize(sizes.maxOccupancyWords);
+    list.add({"measured", scratch, sizeof(uint32_t) * words * sizes.maxMeasuredAxioms});
+    list.add(
+        {"measuring", buffer, sizeof(shader::Measuring) + sizeof(uint32_t) * VkDeviceSize(sizes.gridRoom()), true});
+    list.readBack = shader::kBindMeasured;
+    list.readBackBytes = sizeof(GpgpAxiomMeasures) * sizes.maxMeasuredAxioms;
+  }
   list.report = shader::kBindCounters;
   list.reportBytes = sizeof(shader::SpawnState);
 }

@@ -10,11 +10,14 @@ namespace gpgp::spawn {
 /// How much a spawner has room for, and what it writes.
 struct SpawnerSizes {
   uint32_t maxShapes = 0, maxTerminals = 0, maxColliders = 0, maxHostAxioms = 0;
-  uint32_t rounds = 0; ///< of a phase
+  uint32_t rounds = 0;                                   ///< of a phase
+  uint32_t maxMeasuredAxioms = 0, maxOccupancyWords = 0; ///< words of an axiom's grid
   bool ordered = false;
   bool compact = false; ///< GpgpCompactInstance
   VertexLayout layout;  ///< of vertices; without a stride it writes instances
 
+  /// Words of a target; at least one, as buffers are not empty.
+  uint32_t gridRoom() const { return maxOccupancyWords ? maxOccupancyWords : 1; }
   bool vertices() const { return layout.strideWords != 0; }
   uint32_t phases() const { return maxColliders ? shader::kMaxPhases : 1; }
   /// Counters from the first round of a phase to the next phase's: its rounds, and what the last one left.
@@ -54,6 +57,7 @@ void addPlace(PassBuilder& builder);        ///< buckets
 void addOrder(PassBuilder& builder);        ///< order, for ordered instances
 void addEmit(PassBuilder& builder);         ///< sorted instances
 void addBounds(PassBuilder& builder);
+void addMeasures(PassBuilder& builder); ///< what is measured of each axiom
 
 struct SpawnPasses {
   core::PassList list;

@@ -4,8 +4,28 @@
 
 namespace gpgp::spawn {
 
-enum Groups : uint32_t { kOneGroup, kAxiomGroups, kLinkGroups, kPartGroups, kExpandGroups, kRoundGroups, kBoundGroups };
+enum Groups : uint32_t {
+  kOneGroup,
+  kAxiomGroups,
+  kLinkGroups,
+  kPartGroups,
+  kExpandGroups,
+  kRoundGroups,
+  kBoundGroups,
+  kMeasureGroups,
+  kMeasuredGroups
+};
 /// kPhases and on: there are more phases than 1, 2 ...
-enum Conditions : uint32_t { kSorted, kBucketed, kOrdered, kColliding, kExpanded, kPlaced, kBounded, kPhases };
+enum Conditions : uint32_t {
+  kSorted,
+  kBucketed,
+  kOrdered,
+  kColliding,
+  kExpanded,
+  kPlaced,
+  kBounded,
+  kMeasured,
+  kPhases
+};
 
 } // namespace gpgp::spawn

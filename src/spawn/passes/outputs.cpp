@@ -5,7 +5,10 @@
 #include "shaders/spawn_emit.spv.h"
 #include "shaders/spawn_expand.spv.h"
 #include "shaders/spawn_expand_subgroups.spv.h"
+#include "shaders/spawn_measure.spv.h"
 #include "shaders/spawn_place.spv.h"
+
+#include "spawn/outputs/measure.h"
 
 #include <algorithm>
 
@@ -96,6 +99,25 @@ void addBounds(PassBuilder& b) {
          kBoundGroups);
   bounds("write bounds", 1, {{shader::kBindGraph, read}, {shader::kBindBoundKeys, read}, {shader::kBindBounds, write}},
          kOneGroup);
+}
+
+void addMeasures(PassBuilder& b) {
+  b.list.fill("clear measures", shader::kBindMeasured, 0).condition = kMeasured;
+  const auto measure = [&](const char* name, uint32_t finishes, std::initializer_list<core::Use> uses,
+                           uint32_t groups) {
+    const uint32_t shader = b.list.add(core::ShaderDesc{name, spawn_measure, {finishes}, 1});
+    b.list.dispatch(name, shader, uses, groups).condition = kMeasured;
+  };
+  measure("measure", 0,
+          {{shader::kBindGraph, read},
+           {shader::kBindAxioms, read},
+           {shader::kBindRecords, read},
+           {shader::kBindCounters, read},
+           {shader::kBindConstants, read},
+           {shader::kBindMeasured, readWrite},
+           {shader::kBindMeasuring, read}},
+          kMeasureGroups);
+  measure("finish measures", 1, {{shader::kBindMeasured, readWrite}, {shader::kBindMeasuring, read}}, kMeasuredGroups);
 }
 
 } // namespace gpgp::spawn

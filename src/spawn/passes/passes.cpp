@@ -17,6 +17,7 @@ SpawnPasses describePasses(const SpawnerSizes& sizes, const core::Device& device
     addEmit(builder);
   }
   addBounds(builder);
+  if (sizes.maxMeasuredAxioms) addMeasures(builder);
   return {std::move(builder.list), builder.derive, builder.deriveColliding};
 }
 

@@ -3,6 +3,7 @@
 #include "core/turns.h"
 #include "spawn/schedule/camera.h"
 #include "spawn/schedule/fits.h"
+#include "spawn/schedule/measuring.h"
 #include "spawn/shared/layout.h"
 #include "spawn/shared/shape.h"
 
@@ -70,6 +71,8 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   sizes.maxTerminals = info.maxTerminals ? info.maxTerminals : kDefaultTerminals;
   sizes.maxColliders = info.maxColliders;
   sizes.maxHostAxioms = info.maxHostAxioms;
+  sizes.maxMeasuredAxioms = info.maxMeasuredAxioms;
+  sizes.maxOccupancyWords = info.maxMeasuredAxioms ? info.maxOccupancyWords : 0;
   sizes.rounds = info.maxRounds ? info.maxRounds : context.device.software ? kSoftwareRounds : kDefaultRounds;
   sizes.ordered = info.flags & GPGP_SPAWNER_ORDERED;
   sizes.compact = info.flags & GPGP_SPAWNER_COMPACT;
@@ -84,6 +87,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   spawner->derive_ = passes.derive;
   spawner->deriveColliding_ = passes.deriveColliding;
   if (auto ok = spawner->init(std::move(passes.list)); !ok) return ok.error();
+  if (sizes.maxMeasuredAxioms) spawner->measuring_.resize(sizeof(shader::Measuring) / 4 + sizes.gridRoom());
   return spawner;
 }
 
@@ -101,6 +105,31 @@ uint32_t Spawner::roundsFor(const GpgpSpawnInfo& info, const Grammar& grammar, c
   for (uint64_t shapes = std::max(info.axiomCount, 1u); shapes < fit.spread && rounds < mostRounds; ++rounds)
     shapes *= shapes * most < fit.spread ? shader::kGrowth : most;
   return rounds;
+}
+
+core::Result<void> Spawner::measure(const GpgpSpawnInfo& info, const Grammar& grammar, core::Record& record) {
+  const GpgpMeasureInfo& measures = *info.measures;
+  if (info.axiomCount > sizes_.maxMeasuredAxioms)
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                           "axiomCount is %u, with measures; the spawner was made with maxMeasuredAxioms %u",
+                           info.axiomCount, sizes_.maxMeasuredAxioms);
+  auto measuring = measuringOf(measures, static_cast<uint32_t>(grammar.graph.terminals.size()));
+  if (!measuring) return measuring.error();
+  if (measuring->gridWords > sizes_.maxOccupancyWords)
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                           "measures->occupancy has %u words; the spawner was made with maxOccupancyWords %u",
+                           measuring->gridWords, sizes_.maxOccupancyWords);
+  measuring->axioms = info.axiomCount;
+  measuring->firstGrid = shader::kMeasuredWords * sizes_.maxMeasuredAxioms;
+  std::memcpy(measuring_.data(), &*measuring, sizeof *measuring);
+  if (measuring->gridWords)
+    std::memcpy(measuring_.data() + sizeof *measuring / 4, measures.occupancy->target, 4 * measuring->gridWords);
+  record.bindings[shader::kBindMeasuring].hostData = std::as_bytes(std::span(measuring_));
+  record.groups[kMeasureGroups] = {std::min((sizes_.maxTerminals - 1) / shader::kSpawnGroupSize + 1, 65535u), 1, 1};
+  record.groups[kMeasuredGroups] = {std::clamp(info.axiomCount, 1u, 65535u), 1, 1};
+  record.conditions[kMeasured] = true;
+  record.readBackBytes = static_cast<uint32_t>(sizeof(GpgpAxiomMeasures)) * info.axiomCount;
+  return {};
 }
 
 core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar) {
@@ -138,7 +167,8 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   // One bucket is sorted as it is.
   const bool sorted =
       !vertices() &&
-      (inOrder || (!counts && !regions && (sizes_.compact || (info.draws.buffer && grammar.graph.buckets > 1))));
+      (inOrder ||
+       (!counts && !regions && (sizes_.compact || info.measures || (info.draws.buffer && grammar.graph.buckets > 1))));
   const auto view = viewOf(info.camera);
   if (!view) return view.error();
   shader::SpawnConstants constants{};
@@ -177,10 +207,11 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   }
   constants.maxShapes = sizes_.maxShapes;
   constants.maxTerminals = sizes_.maxTerminals;
-  constants.terminalsTo = counts              ? shader::kToCounts
-                          : sorted || inOrder ? shader::kToKeyedRecords
-                          : vertices()        ? shader::kToRecords
-                                              : shader::kToInstances;
+  constants.terminalsTo = counts && info.measures ? shader::kToKeyedRecords // which place tells from sorted ones
+                          : counts                ? shader::kToCounts
+                          : sorted || inOrder     ? shader::kToKeyedRecords
+                          : vertices()            ? shader::kToRecords
+                                                  : shader::kToInstances;
   constants.regions = regions;
   constants.writeNeeded = info.needed.buffer ? 1 : 0;
   constants.quads = vertices() ? 1 : 0;
@@ -230,6 +261,8 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.conditions[kPlaced] = !constants.reports;
   record.conditions[kColliding] = grammar.graph.phases > 1;
   for (uint32_t phase = 1; phase < phases; ++phase) record.conditions[kPhases + phase - 1] = true;
+  if (info.measures)
+    if (auto ok = measure(info, grammar, record); !ok) return ok;
   record.levels = rounds;
   record.reports =
       constants.reports && isOneSubgroup(context.device, (kernel ? kernel->info : interpreter).target, fit);
@@ -299,6 +332,8 @@ bool Spawner::takeReport(GpgpSpawnReport& report) {
   report.vertices = 4 * state.quads;
   report.verticesWritten = 4 * state.quadsWritten;
   report.colliders = state.colliders;
+  report.axiomCount = static_cast<uint32_t>(raw.readBack.size() / sizeof(GpgpAxiomMeasures));
+  report.axioms = report.axiomCount ? reinterpret_cast<const GpgpAxiomMeasures*>(raw.readBack.data()) : nullptr;
   report.collidersKept = std::min(report.colliders, sizes_.maxColliders);
   if (report.base.status == GPGP_SUCCESS &&
       (state.exceeded || report.droppedShapes || report.unfinishedShapes || report.colliders > report.collidersKept))

@@ -22,7 +22,7 @@ class Spawner final : public core::Recorder {
 public:
   static core::Result<core::Unique<Spawner>> create(core::Context& context, const GpgpSpawnerCreateInfo& info);
   Spawner(core::Context& owner, const GpgpRecorderCreateInfo& base)
-      : Recorder(owner, core::Kind::spawner, base, GPGP_SERVICE_SPAWN) {}
+      : Recorder(owner, core::Kind::spawner, base, GPGP_SERVICE_SPAWN), measuring_(&owner.host()) {}
 
   /// Sizes of buffers are the caller's to check; the rest is checked here.
   core::Result<void> prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar);
@@ -44,7 +44,11 @@ private:
   /// That a recording takes where neither the engine nor a tuned kernel says so.
   uint32_t roundsFor(const GpgpSpawnInfo& info, const Grammar& grammar, const Fit& fit) const;
 
+  /// What GpgpSpawnInfo::measures asks of a recording.
+  core::Result<void> measure(const GpgpSpawnInfo& info, const Grammar& grammar, core::Record& record);
+
   SpawnerSizes sizes_;
+  std::pmr::vector<uint32_t> measuring_; // shader::Measuring, and a target
   uint32_t maxDepth_ = 0;
   uint32_t derive_ = 0, deriveColliding_ = 0; // shaders
   bool roundsGiven_ = false;                  // by the engine
