@@ -4,22 +4,22 @@ namespace gpgp::rmlui {
 
 bool same(const TransformPointer& a, const TransformPointer& b) { return a == b || (a && b && *a == *b); }
 
-void Recorder::begin() {
+void CallRecorder::begin() {
   layers_.assign(1, std::make_shared<std::vector<Operation>>());
   state_ = {};
   clip_.reset();
 }
 
-void Recorder::setTransform(const Transform* transform) {
+void CallRecorder::setTransform(const Transform* transform) {
   if (!transform || *transform == Transform{})
     state_.transform.reset();
   else if (!state_.transform || *state_.transform != *transform)
     state_.transform = std::make_shared<const Transform>(*transform);
 }
 
-void Recorder::enableClip(bool enable) { state_.clip = enable ? clip_ : nullptr; }
+void CallRecorder::enableClip(bool enable) { state_.clip = enable ? clip_ : nullptr; }
 
-void Recorder::clip(ClipOperation operation, GeometryPointer geometry, float x, float y) {
+void CallRecorder::clip(ClipOperation operation, GeometryPointer geometry, float x, float y) {
   auto steps = std::make_shared<std::vector<ClipStep>>();
   if (operation == ClipOperation::intersect && clip_) *steps = *clip_;
   steps->push_back({operation, std::move(geometry), x, y, state_.transform});
@@ -27,7 +27,7 @@ void Recorder::clip(ClipOperation operation, GeometryPointer geometry, float x, 
   state_.clip = clip_;
 }
 
-void Recorder::draw(GeometryPointer geometry, float x, float y, PaintPointer paint) {
+void CallRecorder::draw(GeometryPointer geometry, float x, float y, PaintPointer paint) {
   Operation& operation = layers_.back()->emplace_back();
   operation.state = state_;
   operation.geometry = std::move(geometry);
@@ -36,12 +36,12 @@ void Recorder::draw(GeometryPointer geometry, float x, float y, PaintPointer pai
   operation.paint = std::move(paint);
 }
 
-size_t Recorder::pushLayer() {
+size_t CallRecorder::pushLayer() {
   layers_.push_back(std::make_shared<std::vector<Operation>>());
   return layers_.size() - 1;
 }
 
-bool Recorder::composite(size_t source, size_t destination, bool replace, std::vector<FilterPointer> filters) {
+bool CallRecorder::composite(size_t source, size_t destination, bool replace, std::vector<FilterPointer> filters) {
   if (source >= layers_.size() || destination >= layers_.size()) return false;
   Operation operation;
   operation.state = state_;
@@ -62,13 +62,13 @@ bool Recorder::composite(size_t source, size_t destination, bool replace, std::v
   return !replace || !state_.clip;
 }
 
-bool Recorder::popLayer() {
+bool CallRecorder::popLayer() {
   if (layers_.size() < 2) return false;
   layers_.pop_back();
   return true;
 }
 
-Contents Recorder::top() const {
+Contents CallRecorder::top() const {
   const Contents all = contents(layers_.size() - 1);
   if (!state_.scissor) return all;
   Operation cut;

@@ -102,7 +102,7 @@ struct Operation {
 };
 
 /// Takes RmlUi's calls. Layer 0 is the base.
-class Recorder {
+class CallRecorder {
 public:
   /// Empties all layers but the base, which becomes empty; resets the state.
   void begin();

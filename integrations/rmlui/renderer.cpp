@@ -21,6 +21,7 @@ void check(GpgpResult result, const char* what) {
 
 float linearFromSrgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
 
+constexpr float kFar = 1e6f; // pixels
 constexpr GpgpAccess kCopied{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
                              VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
 constexpr GpgpAccess kCopiedBefore{VK_PIPELINE_STAGE_2_COPY_BIT, 0, VK_IMAGE_LAYOUT_UNDEFINED};
@@ -87,7 +88,7 @@ struct Renderer::Impl final : Painter {
   CanvasHistory history;
   std::optional<GpgpTargetInfo> target;
   List list;
-  Recorder recorder;
+  CallRecorder recorder;
   std::vector<Saved> saved;
   uint32_t width = 0, height = 0;
   bool ready = false;
@@ -130,8 +131,9 @@ Renderer::Impl::Impl(const RendererInfo& wanted) : info(wanted), textures(wanted
   canvasInfo.maxDrawings = info.maxItems ? info.maxItems : 4096;
   canvasInfo.maxTileEntries = 1u << 18;
   canvasInfo.maxImages = info.maxImages;
-  canvasInfo.maxLayerPixels =
-      info.maxLayerPixels ? info.maxLayerPixels : static_cast<uint32_t>(std::min<uint64_t>(6 * pixels, 1u << 24));
+  canvasInfo.maxLayerPixels = info.maxLayerPixels
+                                  ? info.maxLayerPixels
+                                  : static_cast<uint32_t>(std::min<uint64_t>(8 * pixels + (1u << 21), 1u << 24));
   canvasInfo.targets = GPGP_CANVAS_TARGET_RGBA8 | (info.target ? GPGP_CANVAS_TARGET_HISTORY : GpgpCanvasTargets{0});
   Result<Canvas> made = Canvas::create(info.context, canvasInfo);
   check(made.code(), "gpgpCreateCanvas");
@@ -251,6 +253,7 @@ GpgpResult Renderer::Impl::recordCanvas(VkCommandBuffer commands, const GpgpFram
   canvasInfo.items = &item;
   canvasInfo.itemCount = 1;
   canvasInfo.encodeSrgb = canvasInfo.blendSrgb = VK_TRUE; // RmlUi mixes colours as they are encoded
+  canvasInfo.exactArea = VK_TRUE;                         // small letters want it
   canvasInfo.images = images.data();
   canvasInfo.imageCount = static_cast<uint32_t>(images.size());
   canvasInfo.history = shown;
@@ -367,7 +370,15 @@ Rml::CompiledGeometryHandle Renderer::CompileGeometry(Rml::Span<const Rml::Verte
                               {v.colour.red, v.colour.green, v.colour.blue, v.colour.alpha},
                               v.tex_coord.x,
                               v.tex_coord.y});
-  made->indices.assign(indices.begin(), indices.end());
+  // Triangles without a place, as RmlUi makes of boxes that have no size, show nothing on a GPU either.
+  std::vector<bool> placed;
+  for (GpgpListVertex& v : made->vertices) {
+    placed.push_back(std::abs(v.x) < kFar && std::abs(v.y) < kFar && std::abs(v.u) < kFar && std::abs(v.v) < kFar);
+    if (!placed.back()) v.x = v.y = v.u = v.v = 0;
+  }
+  for (size_t i = 0; i + 2 < indices.size(); i += 3)
+    if (std::all_of(&indices[i], &indices[i] + 3, [&](int index) { return placed[static_cast<size_t>(index)]; }))
+      made->indices.insert(made->indices.end(), &indices[i], &indices[i] + 3);
   made->shape = findShape(made->vertices, made->indices);
   return give(GeometryHandle{std::move(made)});
 }
@@ -428,6 +439,12 @@ void Renderer::SetTransform(const Rml::Matrix4f* matrix) {
   const Rml::Vector4f x = *matrix * Rml::Vector4f(1, 0, 0, 0), y = *matrix * Rml::Vector4f(0, 1, 0, 0),
                       origin = *matrix * Rml::Vector4f(0, 0, 0, 1);
   Transform transform{{x.x, x.y, y.x, y.y, origin.x, origin.y}, {x.w, y.w, origin.w}};
+  const auto finite = [](float v) { return std::isfinite(v); };
+  if (!std::all_of(transform.map.begin(), transform.map.end(), finite) ||
+      !std::all_of(transform.perspective.begin(), transform.perspective.end(), finite)) {
+    impl_->unsupported("transforms that are not finite: nothing shows under them");
+    transform = {{0, 0, 0, 0, 0, 0}, {0, 0, 1}};
+  }
   impl_->recorder.setTransform(&transform);
 }
 

@@ -7,7 +7,8 @@
 namespace gpgp::rmlui {
 namespace {
 
-constexpr float kNear = 0.02f; // pixels
+constexpr float kNear = 0.02f;  // pixels
+constexpr float kEdge = 0.001f; // how far from a side of its box a point on it is at most
 
 } // namespace
 
@@ -48,8 +49,8 @@ std::optional<RoundBox> findShape(std::span<const GpgpListVertex> vertices, std:
   std::array<std::array<float, 2>, 4> reach; // from the corner along the horizontal and the vertical side
   reach.fill({width, height});
   for (const GpgpListVertex& v : vertices) {
-    const bool onTop = v.y - b[1] < kNear, onBottom = b[3] - v.y < kNear, onLeft = v.x - b[0] < kNear,
-               onRight = b[2] - v.x < kNear;
+    const bool onTop = v.y - b[1] < kEdge, onBottom = b[3] - v.y < kEdge, onLeft = v.x - b[0] < kEdge,
+               onRight = b[2] - v.x < kEdge;
     const auto along = [&](size_t corner, size_t side, float distance) {
       reach[corner][side] = std::min(reach[corner][side], distance);
     };

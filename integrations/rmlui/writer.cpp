@@ -154,6 +154,7 @@ void Writer::geometry(const Operation& operation) {
 }
 
 void Writer::triangles(const Geometry& geometry, float x, float y, const Texture* texture) {
+  if (geometry.indices.empty()) return;
   GpgpListTriangles triangles{};
   triangles.vertices = geometry.vertices.data();
   triangles.vertexCount = static_cast<uint32_t>(geometry.vertices.size());

@@ -1,4 +1,4 @@
-// Makes a list of what a frame's Recorder holds: layers nest, clip masks are clips or masks, filters are steps.
+// Makes a list of what a frame's CallRecorder holds: layers nest, clip masks are clips or masks, filters are steps.
 #pragma once
 #include "frame.h"
 

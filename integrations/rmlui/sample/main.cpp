@@ -77,13 +77,13 @@ bool parse(int argc, char** argv, Options& options) {
   return !options.document.empty();
 }
 
-/// Files below a folder where a path begins with /.
+/// Files, or else files below a folder.
 class Files final : public Rml::FileInterface {
 public:
   explicit Files(std::string root) : root_(std::move(root)) {}
   Rml::FileHandle Open(const Rml::String& path) override {
-    FILE* file = path.rfind('/', 0) == 0 && !root_.empty() ? std::fopen((root_ + path).c_str(), "rb") : nullptr;
-    if (!file) file = std::fopen(path.c_str(), "rb");
+    FILE* file = std::fopen(path.c_str(), "rb");
+    if (!file && !root_.empty()) file = std::fopen((root_ + "/" + path).c_str(), "rb"); // RmlUi has removed the first /
     return reinterpret_cast<Rml::FileHandle>(file);
   }
   void Close(Rml::FileHandle file) override { std::fclose(reinterpret_cast<FILE*>(file)); }
