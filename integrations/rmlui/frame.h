@@ -6,6 +6,8 @@
 #pragma once
 #include "shapes.h"
 
+#include <gpgp/gpgp.hpp>
+
 #include <memory>
 #include <string>
 
@@ -66,11 +68,12 @@ struct TextStyle {
 
 /// Null pointers: the colours of the vertices alone.
 struct Paint {
-  enum class Kind { image, gradient, text };
+  enum class Kind { image, gradient, text, drawing };
   Kind kind = Kind::image;
   TexturePointer texture;
   Gradient gradient;
   TextStyle text;
+  Drawing drawing; ///< in place of an image: its page is the image
 };
 using PaintPointer = std::shared_ptr<const Paint>;
 

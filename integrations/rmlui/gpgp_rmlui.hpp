@@ -80,6 +80,9 @@ struct RendererInfo {
   uint32_t maxWidth = 1920, maxHeight = 1080;
   /// Decodes the pictures that documents name. False: there is none, or it is no picture.
   std::function<bool(const std::string& source, DecodedImage& image)> loadImage;
+  /// Optional, asked before loadImage: a drawing (a baked or compiled SVG) in place of a picture, for `img` and
+  /// decorators. It is shown as curves at every size. An empty one: it is none.
+  std::function<Drawing(const std::string& source)> loadDrawing;
   /// Budgets of a frame; 0: what a page of several screens takes.
   uint32_t maxShapes = 0; ///< triangles, gradients, clips
   uint32_t maxGlyphs = 0;

@@ -399,6 +399,17 @@ Rml::TextureHandle Renderer::LoadTexture(Rml::Vector2i& size, const Rml::String&
     paint->text = *style;
     return give(PaintHandle{std::move(paint)});
   }
+  if (impl_->info.loadDrawing)
+    if (Drawing drawing = impl_->info.loadDrawing(source)) {
+      GpgpDrawingInfo page = GPGP_DRAWING_INFO_INIT;
+      if (gpgpGetDrawingInfo(drawing, &page) < 0 || !(page.viewport[2] > 0 && page.viewport[3] > 0)) return 0;
+      size = {std::max(1, static_cast<int>(std::lround(page.viewport[2]))),
+              std::max(1, static_cast<int>(std::lround(page.viewport[3])))};
+      auto paint = std::make_shared<Paint>();
+      paint->kind = Paint::Kind::drawing;
+      paint->drawing = std::move(drawing);
+      return give(PaintHandle{std::move(paint)});
+    }
   DecodedImage image;
   if (!impl_->info.loadImage || !impl_->info.loadImage(source, image)) return 0;
   size = {static_cast<int>(image.width), static_cast<int>(image.height)};

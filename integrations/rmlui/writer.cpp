@@ -148,6 +148,8 @@ void Writer::geometry(const Operation& operation) {
     triangles(*operation.geometry, operation.x, operation.y, operation.paint->texture.get());
   else if (operation.paint->kind == Paint::Kind::gradient)
     gradient(operation);
+  else if (operation.paint->kind == Paint::Kind::drawing)
+    drawing(operation);
   else
     text(operation);
   pop(pushes);
@@ -194,6 +196,53 @@ void Writer::text(const Operation& operation) {
   }
   did(painter_.text(list_, *operation.geometry, operation.x, operation.y, style));
   pop(pushes);
+}
+
+/// Boxes, as RmlUi shows images in: four corners each, from the top left one on.
+void Writer::drawing(const Operation& operation) {
+  const Geometry& geometry = *operation.geometry;
+  GpgpDrawingInfo info = GPGP_DRAWING_INFO_INIT;
+  if (gpgpGetDrawingInfo(operation.paint->drawing, &info) < 0) return;
+  const float* page = info.viewport;
+  if (geometry.vertices.size() % 4 != 0) {
+    painter_.unsupported("a drawing as the image of something else than boxes");
+    return;
+  }
+  for (size_t i = 0; i < geometry.vertices.size(); i += 4) {
+    const GpgpListVertex &a = geometry.vertices[i], &c = geometry.vertices[i + 2];
+    const Box box{a.x, a.y, c.x, c.y}, source{a.u, a.v, c.u, c.v};
+    if (empty(box)) continue;
+    const bool turned = std::any_of(&a + 1, &a + 4, [&](const GpgpListVertex& v) {
+      const size_t x = v.x == a.x ? 0 : 2, y = v.y == a.y ? 1 : 3;
+      return v.x != box[x] || v.y != box[y] || v.u != source[x] || v.v != source[y];
+    });
+    const bool inside = std::all_of(source.begin(), source.end(), [](float v) { return v > -1e-4f && v < 1.0001f; });
+    if (turned || !inside || source[0] == source[2] || source[1] == source[3]) {
+      painter_.unsupported("a drawing that is repeated, or the image of something else than boxes");
+      continue;
+    }
+    if (a.color[0] != a.color[3] || a.color[1] != a.color[3] || a.color[2] != a.color[3])
+      painter_.unsupported("image-color of drawings: they keep their colours");
+    const float move[6] = {1, 0, 0, 1, operation.x, operation.y};
+    const float width = (box[2] - box[0]) / (source[2] - source[0]) / page[2];
+    const float height = (box[3] - box[1]) / (source[3] - source[1]) / page[3];
+    const float place[6] = {width,
+                            0,
+                            0,
+                            height,
+                            box[0] - source[0] * page[2] * width - page[0] * width,
+                            box[1] - source[1] * page[3] * height - page[1] * height};
+    uint32_t pushes = 3;
+    did(list_.pushTransform(move));
+    did(list_.pushClip(box.data()));
+    did(list_.pushTransform(place));
+    if (a.color[3] < 255) {
+      did(list_.pushGroup(static_cast<float>(a.color[3]) / 255));
+      ++pushes;
+    }
+    did(list_.add(operation.paint->drawing, 0, GPGP_ID_NOT_HIT));
+    pop(pushes);
+  }
 }
 
 // ---------------------------------------------------------------- layers and filters

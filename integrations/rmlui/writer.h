@@ -58,6 +58,7 @@ private:
                     float alpha);
   void fillConic(const Gradient& gradient, const Box& box, float x, float y, float alpha);
   void text(const Operation& operation);
+  void drawing(const Operation& operation);
   void composite(const Operation& operation);
   bool backdrop(const Contents& contents, size_t index);
   std::vector<Stage> stagesOf(const std::vector<FilterPointer>& filters) const;

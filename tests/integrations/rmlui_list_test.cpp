@@ -492,6 +492,17 @@ float positionOf(const Gradient& g, float x, float y) {
   return first + (t - std::floor(t)) * period;
 }
 
+TEST(RmlUiGradients, ColoursBetweenStopsAreSmoothSteps) {
+  Gradient g;
+  g.stops = {{0.2f, {0, 0, 0, 0}}, {0.6f, {1, 0.5f, 0, 1}}, {0.6f, {0, 0, 1, 1}}};
+  EXPECT_EQ(colorAt(g, -1), (Color{0, 0, 0, 0}));
+  EXPECT_NEAR(colorAt(g, 0.3f)[0], 0.15625f, 1e-5f); // 3 t^2 - 2 t^3 of a quarter
+  EXPECT_NEAR(colorAt(g, 0.4f)[1], 0.25f, 1e-5f);
+  EXPECT_NEAR(colorAt(g, 0.5f)[3], 0.84375f, 1e-5f);
+  EXPECT_NEAR(colorAt(g, 0.5999f)[0], 1, 1e-3f);
+  EXPECT_EQ(colorAt(g, 0.6001f), (Color{0, 0, 1, 1})); // two stops at one place
+}
+
 TEST_F(RmlUiList, GradientsAreTheirFormulas) {
   for (const auto kind : {Gradient::Kind::linear, Gradient::Kind::radial, Gradient::Kind::conic})
     for (const bool repeating : {false, true})

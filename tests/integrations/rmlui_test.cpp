@@ -54,6 +54,7 @@ struct Shared {
       image = {2, 1, {255, 0, 0, 255, 0, 0, 128, 128}};
       return true;
     };
+    info.loadDrawing = [this](const std::string& source) { return source == "card.svg" ? makeCard() : Drawing{}; };
     renderer = std::make_unique<rmlui::Renderer>(info);
     Rml::SetSystemInterface(&system);
     Rml::SetFontEngineInterface(&fonts);
@@ -68,6 +69,24 @@ struct Shared {
     renderer.reset();
     vkDestroyFramebuffer(stage.device.device, framebuffer, nullptr);
     vkDestroyRenderPass(stage.device.device, pass, nullptr);
+  }
+  /// A red square in the left half of a page of 20 x 10, a blue one that reaches beyond its right side.
+  Drawing makeCard() {
+    const GpgpPathVerb verbs[] = {GPGP_PATH_MOVE, GPGP_PATH_LINE, GPGP_PATH_LINE, GPGP_PATH_LINE, GPGP_PATH_CLOSE};
+    const float left[] = {0, 0, 10, 0, 10, 10, 0, 10}, right[] = {15, 0, 30, 0, 30, 10, 15, 10};
+    GpgpPath paths[2]{};
+    for (int i = 0; i < 2; ++i) {
+      paths[i].verbs = verbs;
+      paths[i].verbCount = 5;
+      paths[i].points = i == 0 ? left : right;
+      paths[i].pointCount = 4;
+      paths[i].color[i == 0 ? 0 : 2] = 1;
+      paths[i].color[3] = 1;
+    }
+    auto info = init<GpgpDrawingCreateInfo>();
+    info.paths = paths;
+    info.pathCount = 2;
+    return *Drawing::create(stage.context, info);
   }
   void makePass() {
     VkAttachmentDescription attachment{};
@@ -219,6 +238,20 @@ TEST_F(RmlUi, BoxesBordersAndImages) {
   expectColor(p, 220, 120, {255, 0, 0, 255}, 4, "opaque texel of the picture");
   expectColor(p, 260, 120, {0, 0, 128, 128}, 4, "translucent texel");
   expectColor(p, 240, 120, {127, 0, 64, 191}, 6, "between texels");
+}
+
+/// Without a page its bounds are the page: 30 x 10.
+TEST_F(RmlUi, DrawingsAreImages) {
+  const Picture p = draw("#a { position: absolute; left: 20px; top: 30px; width: 240px; height: 80px; opacity: 0.5; } "
+                         "#b { position: absolute; left: 20px; top: 150px; width: 150px; height: 50px; "
+                         "decorator: image(card.svg); }",
+                         "<img id='a' src='card.svg'/><div id='b'/>");
+  expectColor(p, 60, 70, {127, 0, 0, 127}, 1, "the left one, translucent");
+  for (const int x : {18, 101, 138, 261}) expectColor(p, x, 70, {0, 0, 0, 0}, 0, "beside them");
+  expectColor(p, 99, 70, {127, 0, 0, 127}, 1, "sharp up to its edge");
+  expectColor(p, 141, 70, {0, 0, 127, 127}, 1, "the right one");
+  expectColor(p, 68, 175, {255, 0, 0, 255}, 0, "in a decorator");
+  expectColor(p, 72, 175, {0, 0, 0, 0}, 0, "between");
 }
 
 TEST_F(RmlUi, InsideAPassItIsTheSame) {

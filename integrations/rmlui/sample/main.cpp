@@ -211,6 +211,25 @@ void need(GpgpResult result, const char* what) {
   if (result < 0) throw std::runtime_error(std::string(what) + ": " + gpgpResultString(result));
 }
 
+/// Nothing where it is no SVG.
+Drawing loadDrawing(GpgpContext context, const std::string& file) {
+  Rml::String bytes;
+  if (std::filesystem::path(file).extension() != ".svg" || !Rml::GetFileInterface()->LoadFile(file, bytes)) return {};
+  auto source = init<GpgpSvgSource>();
+  source.name = file.c_str();
+  source.data = bytes.data();
+  source.size = bytes.size();
+  source.messageFn = onMessage;
+  const Result<Blob> baked = compileSvg(source);
+  if (!baked) return {};
+  auto info = init<GpgpDrawingCreateInfo>();
+  info.label = file.c_str();
+  info.data = baked->data();
+  info.size = baked->size();
+  Result<Drawing> made = Drawing::create(context, info);
+  return made ? *std::move(made) : Drawing{};
+}
+
 /// RmlUi, from here to there.
 struct Toolkit {
   Toolkit(rmlui::FontEngine& fonts, rmlui::Renderer& renderer, System& system, Files& files) {
@@ -219,6 +238,9 @@ struct Toolkit {
     Rml::SetFontEngineInterface(&fonts);
     Rml::SetRenderInterface(&renderer);
     if (!Rml::Initialise()) throw std::runtime_error("Rml::Initialise failed");
+    // Without RmlUi's own SVG plugin `svg` is any element: what is `img` for drawings will do.
+    if (Rml::Factory::GetElementInstancer("svg") == Rml::Factory::GetElementInstancer("*"))
+      Rml::Factory::RegisterElementInstancer("svg", Rml::Factory::GetElementInstancer("img"));
   }
   ~Toolkit() { Rml::Shutdown(); }
 };
@@ -252,6 +274,7 @@ int run(const Options& options) {
       Rml::String bytes;
       return Rml::GetFileInterface()->LoadFile(source, bytes) && sample::decode(bytes, image);
     };
+    info.loadDrawing = [&](const std::string& source) { return loadDrawing(context, source); };
     rmlui::Renderer renderer(info);
     Paper paper(device, options.width, options.height);
     System system;
