@@ -1,10 +1,14 @@
 #include "gpgp_glyph_cache.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 
 namespace gpgp::integration {
 namespace {
+
+constexpr float kStrokeScale = 256;        // pixels per em up to which strokes are accurate
+constexpr float kStrokeUnit = 1 / 4096.0f; // em
 
 /// A glyph's paths, kept beyond the call that hands them over.
 struct Outline {
@@ -13,6 +17,7 @@ struct Outline {
     std::vector<float> points;
     std::vector<GpgpGradientStop> stops;
     GpgpGradient gradient{};
+    GpgpStroke stroke{};
   };
   std::vector<Path> kept;
   std::vector<GpgpPath> paths;
@@ -32,6 +37,10 @@ struct Outline {
         kept[i].gradient.stops = kept[i].stops.data();
         path.gradient = &kept[i].gradient;
       }
+      if (path.stroke) {
+        kept[i].stroke = *path.stroke; // without dashes
+        path.stroke = &kept[i].stroke;
+      }
       paths.push_back(path);
       foreground.push_back(outline.foreground[i]);
     }
@@ -39,9 +48,14 @@ struct Outline {
 };
 
 /// gpgpGetGlyphOutline; the callback is any function.
-template <class Take> GpgpResult fetch(GpgpFont font, uint32_t glyph, Take&& take) {
+template <class Take> GpgpResult fetch(GpgpFont font, uint32_t glyph, float stroke, Take&& take) {
   GpgpGlyphOutlineInfo info = GPGP_GLYPH_OUTLINE_INFO_INIT;
   info.glyph = glyph;
+  GpgpStroke line{};
+  line.width = stroke;
+  line.join = GPGP_JOIN_ROUND;
+  line.scale = kStrokeScale;
+  if (stroke > 0) info.stroke = &line;
   return gpgpGetGlyphOutline(
       font, &info, [](void* user, const GpgpGlyphOutline* given) { (*static_cast<Take*>(user))(*given); }, &take);
 }
@@ -76,7 +90,7 @@ std::array<float, 4> linesBox(const GpgpLayoutInfo& layout) {
 
 std::array<float, 4> inkBox(GpgpFont font, uint32_t glyph) {
   std::array<float, 4> box{};
-  fetch(font, glyph, [&box](const GpgpGlyphOutline& outline) {
+  fetch(font, glyph, 0, [&box](const GpgpGlyphOutline& outline) {
     std::copy_n(outline.image ? outline.image->box : outline.box, 4, box.begin());
   });
   return box;
@@ -95,40 +109,43 @@ GpgpResult GlyphCache::create(const GlyphCacheInfo& wanted) {
   return GPGP_SUCCESS;
 }
 
-const GlyphCache::FontEntry& GlyphCache::entryOf(GpgpFont font) {
-  const auto [at, isNew] = fonts_.try_emplace(font);
+const GlyphCache::FontEntry& GlyphCache::entryOf(GpgpFont font, float stroke) {
+  const auto units = static_cast<uint32_t>(std::lround(std::clamp(stroke, 0.0f, 1000.0f) / kStrokeUnit));
+  const auto [at, isNew] = fonts_.try_emplace({font, units});
   if (isNew) {
     GpgpFontInfo info = GPGP_FONT_INFO_INIT;
     const bool known = gpgpGetFontInfo(font, &info) == GPGP_SUCCESS;
-    at->second = {nextFont_++, known && (info.colors & GPGP_FONT_COLOR_BITMAPS) != 0};
+    at->second = {nextFont_++, known && units == 0 && (info.colors & GPGP_FONT_COLOR_BITMAPS) != 0,
+                  static_cast<float>(units) * kStrokeUnit};
   }
   return at->second;
 }
 
 /// keys_ and indices_ of all; those that the set has not are added.
-GpgpResult GlyphCache::findGlyphs(std::span<const GpgpTextGlyph> glyphs) {
+GpgpResult GlyphCache::findGlyphs(std::span<const GpgpTextGlyph> glyphs, float stroke) {
   keys_.clear();
-  for (const GpgpTextGlyph& glyph : glyphs) keys_.push_back(uint64_t{entryOf(glyph.font).number} << 32 | glyph.glyph);
+  for (const GpgpTextGlyph& glyph : glyphs)
+    keys_.push_back(uint64_t{entryOf(glyph.font, stroke).number} << 32 | glyph.glyph);
   indices_.assign(glyphs.size(), GPGP_GLYPH_NONE);
   const auto count = static_cast<uint32_t>(glyphs.size());
   const GpgpResult found = set_.find(keys_.data(), count, indices_.data());
   if (found != GPGP_INCOMPLETE) return found;
-  const GpgpResult added = addGlyphs(glyphs);
+  const GpgpResult added = addGlyphs(glyphs, stroke);
   if (added < 0) return added;
   const GpgpResult again = set_.find(keys_.data(), count, indices_.data());
   return again == GPGP_INCOMPLETE ? added : again;
 }
 
 /// Those without an index. Pictures are blanks in the set.
-GpgpResult GlyphCache::addGlyphs(std::span<const GpgpTextGlyph> glyphs) {
+GpgpResult GlyphCache::addGlyphs(std::span<const GpgpTextGlyph> glyphs, float stroke) {
   std::deque<Outline> outlines;
   std::vector<GpgpGlyph> made;
   std::unordered_map<uint64_t, bool> met;
   for (size_t i = 0; i < glyphs.size(); ++i) {
     if (indices_[i] != GPGP_GLYPH_NONE || !met.emplace(keys_[i], true).second) continue;
     Outline& outline = outlines.emplace_back();
-    const GpgpResult result =
-        fetch(glyphs[i].font, glyphs[i].glyph, [&outline](const GpgpGlyphOutline& given) { outline.take(given); });
+    const GpgpResult result = fetch(glyphs[i].font, glyphs[i].glyph, entryOf(glyphs[i].font, stroke).stroke,
+                                    [&outline](const GpgpGlyphOutline& given) { outline.take(given); });
     if (result < 0) return result;
     made.push_back(
         {keys_[i], outline.paths.data(), static_cast<uint32_t>(outline.paths.size()), outline.foreground.data()});
@@ -146,7 +163,7 @@ GpgpResult GlyphCache::findPicture(const GpgpTextGlyph& glyph, uint64_t key, con
   if (isNew || (picture.is && !there)) {
     if (!isNew && pictures_->full()) return GPGP_BUDGET_EXCEEDED; // without decoding it again in every frame
     picture.place = GlyphPictures::kNone;
-    const GpgpResult fetched = fetch(glyph.font, glyph.glyph, [&](const GpgpGlyphOutline& outline) {
+    const GpgpResult fetched = fetch(glyph.font, glyph.glyph, 0, [&](const GpgpGlyphOutline& outline) {
       picture.is = outline.image != nullptr;
       if (!picture.is) return;
       std::copy_n(outline.image->box, 4, picture.box);
@@ -166,14 +183,15 @@ GpgpResult GlyphCache::findPicture(const GpgpTextGlyph& glyph, uint64_t key, con
   return GPGP_SUCCESS;
 }
 
-GpgpResult GlyphCache::place(std::span<const GpgpTextGlyph> glyphs, float x, float y, float scale, PlacedText& text) {
+GpgpResult GlyphCache::place(std::span<const GpgpTextGlyph> glyphs, float x, float y, float scale, PlacedText& text,
+                             float stroke) {
   if (glyphs.empty()) return GPGP_SUCCESS;
-  GpgpResult result = findGlyphs(glyphs);
+  GpgpResult result = findGlyphs(glyphs, stroke);
   if (result < 0) return result;
   for (size_t i = 0; i < glyphs.size(); ++i) {
     const GpgpTextGlyph& from = glyphs[i];
     const float left = x + from.x * scale, top = y + from.y * scale, size = from.size * scale;
-    if (pictures_ && entryOf(from.font).pictures) {
+    if (pictures_ && entryOf(from.font, stroke).pictures) {
       const Picture* picture = nullptr;
       const GpgpResult found = findPicture(from, keys_[i], picture);
       if (found < 0) return found;
@@ -241,10 +259,11 @@ GpgpResult GlyphCache::recordUpload(VkCommandBuffer commands, const GpgpFrame& f
 std::optional<GpgpCanvasImage> GlyphCache::image() const { return pictures_ ? pictures_->image() : std::nullopt; }
 
 void GlyphCache::forget(GpgpFont font) {
-  const auto found = fonts_.find(font);
-  if (found == fonts_.end()) return;
-  std::erase_if(pictureGlyphs_, [&](const auto& entry) { return entry.first >> 32 == found->second.number; });
-  fonts_.erase(found);
+  const auto first = fonts_.lower_bound({font, 0});
+  auto end = first;
+  for (; end != fonts_.end() && end->first.first == font; ++end)
+    std::erase_if(pictureGlyphs_, [&](const auto& entry) { return entry.first >> 32 == end->second.number; });
+  fonts_.erase(first, end);
 }
 
 } // namespace gpgp::integration

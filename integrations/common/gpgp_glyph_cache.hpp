@@ -10,6 +10,7 @@
 #pragma once
 #include "gpgp_glyph_pictures.hpp"
 
+#include <map>
 #include <memory>
 #include <span>
 #include <unordered_map>
@@ -64,8 +65,10 @@ public:
   GpgpResult create(const GlyphCacheInfo& info);
   GpgpAsset set() const { return set_; }
   /// Appends glyphs, moved by (x, y) after they were scaled: of each font, glyph, x, y, size and color count.
+  /// stroke: 0, or width in em of a line along the glyphs' outlines, with round joins, which is placed in their stead.
   /// BUDGET_EXCEEDED: some are not there, and counted.
-  GpgpResult place(std::span<const GpgpTextGlyph> glyphs, float x, float y, float scale, PlacedText& text);
+  GpgpResult place(std::span<const GpgpTextGlyph> glyphs, float x, float y, float scale, PlacedText& text,
+                   float stroke = 0);
   /// With underlines and strikes.
   GpgpResult place(const GpgpLayoutInfo& layout, float x, float y, float scale, PlacedText& text) {
     text.decorate({layout.decorations, layout.decorationCount}, x, y, scale);
@@ -84,6 +87,7 @@ private:
   struct FontEntry {
     uint32_t number = 0;
     bool pictures = false; ///< may have some
+    float stroke = 0;      ///< em
   };
   struct Picture { ///< of a glyph of such a font
     bool is = false;
@@ -91,13 +95,13 @@ private:
     uint32_t place = GlyphPictures::kNone;
     uint64_t owner = 0; ///< of the place, when it was this picture's
   };
-  const FontEntry& entryOf(GpgpFont font);
-  GpgpResult findGlyphs(std::span<const GpgpTextGlyph> glyphs);
-  GpgpResult addGlyphs(std::span<const GpgpTextGlyph> glyphs);
+  const FontEntry& entryOf(GpgpFont font, float stroke);
+  GpgpResult findGlyphs(std::span<const GpgpTextGlyph> glyphs, float stroke);
+  GpgpResult addGlyphs(std::span<const GpgpTextGlyph> glyphs, float stroke);
   GpgpResult findPicture(const GpgpTextGlyph& glyph, uint64_t key, const Picture*& found);
   GlyphSet set_;
   std::unique_ptr<GlyphPictures> pictures_;
-  std::unordered_map<GpgpFont, FontEntry> fonts_;
+  std::map<std::pair<GpgpFont, uint32_t>, FontEntry> fonts_; ///< and stroke, in 1/4096 em
   std::unordered_map<uint64_t, Picture> pictureGlyphs_;
   uint32_t nextFont_ = 0;
   std::vector<uint64_t> keys_;
