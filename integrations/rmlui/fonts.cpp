@@ -265,15 +265,16 @@ float FontEngine::Impl::set(const SizedFace& face, Rml::StringView string, const
     info.style.features = &unkerned;
     info.style.featureCount = 1;
   }
-  // RmlUi measures words with the space before them: it is the same space whatever follows.
-  const auto spaces = static_cast<uint32_t>(
-      std::find_if(string.begin(), string.end(), [](char c) { return c != ' '; }) - string.begin());
-  GpgpTextSpan leading{0, spaces, info.style};
-  leading.style.fontCount = 1;
-  if (spaces > 0) {
-    info.spans = &leading;
-    info.spanCount = 1;
+  // Spaces are the face's own, whatever font is before them: RmlUi measures words alone, or with the space before.
+  std::vector<GpgpTextSpan> spaces;
+  for (uint32_t i = 0; i < string.size() && chain.size() > 1; ++i) {
+    if (string.begin()[i] != ' ') continue;
+    if (spaces.empty() || spaces.back().end != i) spaces.push_back({i, i, info.style});
+    spaces.back().end = i + 1;
+    spaces.back().style.fontCount = 1;
   }
+  info.spans = spaces.data();
+  info.spanCount = static_cast<uint32_t>(spaces.size());
   left = 0;
   GpgpLayoutInfo laid = GPGP_LAYOUT_INFO_INIT;
   if (!layout || layout.set(info) < 0 || gpgpGetLayoutInfo(layout, &laid) < 0) return 0;
