@@ -1,4 +1,6 @@
 // `gpgp fit`: searches for the axiom of a grammar whose derivation comes nearest to a silhouette or to sums.
+#include "cli/shared/command.h"
+#include "cli/shared/painter.h"
 #include "cli/spawn/fit_scorer.h"
 #include "cli/spawn/grammar_source.h"
 #include "cli/spawn/scene_picture.h"
