@@ -111,7 +111,7 @@ struct KeepTest : CanvasTest {
   uint64_t version = 0;
   uint32_t layers = 0;
   std::array<float, 4> background{0.1f, 0.2f, 0.3f, 1};
-  uint32_t width = kSide, height = kSide, samples = 16;
+  uint32_t side = kSide, width = kSide, height = kSide, samples = 16; ///< side: of the canvas and its images
 
   void TearDown() override {
     for (const GpgpAsset drawing : drawings) gpgpDestroyAsset(drawing);
@@ -127,7 +127,7 @@ struct KeepTest : CanvasTest {
     dice = Dice(seed);
     GpgpCanvasCreateInfo info = GPGP_CANVAS_CREATE_INFO_INIT;
     info.base = {"canvas", device.graphics().family, 0, VK_FALSE};
-    info.maxWidth = info.maxHeight = kSide;
+    info.maxWidth = info.maxHeight = side;
     info.maxPaths = 16384;
     info.maxDrawings = 512;
     info.maxGlyphs = 4096;
@@ -281,7 +281,7 @@ struct KeepTest : CanvasTest {
     GpgpHistory history = nullptr;
     bool written = false;
     Kept(KeepTest& test, uint32_t maxKept)
-        : image(test.device, {.format = VK_FORMAT_R16G16B16A16_SFLOAT, .width = kSide, .height = kSide}) {
+        : image(test.device, {.format = VK_FORMAT_R16G16B16A16_SFLOAT, .width = test.side, .height = test.side}) {
       GpgpCanvasHistoryCreateInfo info = GPGP_CANVAS_HISTORY_CREATE_INFO_INIT;
       info.maxKept = maxKept;
       EXPECT_EQ(gpgpCreateCanvasHistory(test.context, &info, &history), GPGP_SUCCESS) << test.lastMessage();
@@ -290,14 +290,15 @@ struct KeepTest : CanvasTest {
     Kept(const Kept&) = delete;
   };
   void record(VkCommandBuffer commands, const GpgpFrame& frame, const std::vector<GpgpCanvasItem>& all, Kept* kept,
-              const host::Image& image, bool written) {
+              const host::Image& image, bool written, bool keep = true, const GpgpTimestamps& timestamps = {}) {
     const GpgpAccess after{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
     GpgpCanvasInfo info = infoOf(all, width, height);
+    info.base.timestamps = timestamps;
     std::copy(background.begin(), background.end(), info.background);
     info.samples = samples;
     info.target = image.target(written ? after : GpgpAccess{}, after);
     info.history = kept ? kept->history : nullptr;
-    info.keep = kept != nullptr;
+    info.keep = kept != nullptr && keep;
     ASSERT_EQ(gpgpRecordPrepareCanvas(canvas, commands, &frame, &info), GPGP_SUCCESS) << lastMessage();
   }
   /// Records the scene kept and whole; the pictures must be equal. The kept one's report.
@@ -531,6 +532,54 @@ TEST_F(KeepTest, IncompleteRecordingsAreNotKept) {
   EXPECT_EQ(report.base.status, GPGP_NOT_EXECUTED);
   EXPECT_EQ(compareOnce(kept, whole, "after one that never ran").redraw, GPGP_CANVAS_REDRAW_INCOMPLETE);
   EXPECT_EQ(compareOnce(kept, whole, "and then").tilesDrawn, 0u);
+}
+
+/// Says what recordings of an interface cost, of which nothing or one text of a hundred changes.
+TEST_F(KeepTest, AnInterfaceOfWhichLittleChanges) {
+  side = width = height = 512;
+  makeScene(61, 0);
+  for (uint32_t i = 0; i < 100; ++i) {
+    Node n;
+    n.kind = Node::list;
+    n.x = 50.0f * static_cast<float>(i % 10) + 8, n.y = 50.0f * static_cast<float>(i / 10) + 8;
+    n.shapes = {rounded(rectangle(0, 0, 44, 44, {0.2f, 0.2f, 0.5f, 1}), 6, 6, 6, 6)};
+    for (uint32_t k = 0; k < 4; ++k)
+      n.glyphs.push_back({glyphs[k], 10.0f * static_cast<float>(k), 20, 9, {1, 1, 1, 1}});
+    nodes.push_back(n);
+  }
+  Kept kept(*this, 4096);
+  uint32_t passes = 0;
+  ASSERT_EQ(gpgpGetPasses(canvas, &passes, nullptr), GPGP_SUCCESS);
+  VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+  info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+  info.queryCount = passes + 1;
+  VkQueryPool queries = VK_NULL_HANDLE;
+  ASSERT_EQ(device.vk().vkCreateQueryPool(device.device(), &info, nullptr, &queries), VK_SUCCESS);
+  std::array<std::vector<double>, 3> ticks; // whole, one text changes, nothing changes
+  for (uint32_t k = 0; k < 3 * 15; ++k) {
+    if (k % 3 == 1) nodes[k].glyphs[0].glyph = nodes[k].glyphs[0].glyph == glyphs[0] ? glyphs[1] : glyphs[0];
+    const std::vector<GpgpCanvasItem> all = items();
+    const GpgpFrame frame = advance();
+    device.submitAndWait([&](VkCommandBuffer commands) {
+      EXPECT_EQ(gpgpRecordUpload(context, commands, &frame, 0, nullptr), GPGP_SUCCESS);
+      device.vk().vkCmdResetQueryPool(commands, queries, 0, passes + 1);
+      record(commands, frame, all, &kept, kept.image, k > 0, k % 3 != 0, {queries, 0, passes + 1});
+    });
+    advance();
+    std::vector<uint64_t> times(passes + 1);
+    ASSERT_EQ(device.vk().vkGetQueryPoolResults(device.device(), queries, 0, passes + 1, times.size() * 8, times.data(),
+                                                8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+              VK_SUCCESS);
+    ticks[k % 3].push_back(static_cast<double>(times.back() - times.front()));
+    GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+    ASSERT_EQ(gpgpGetCanvasReport(canvas, &report), GPGP_SUCCESS);
+    const uint32_t drawn = report.tilesDrawn; // a glyph of 9 pixels lies in at most 16 tiles, with margins
+    EXPECT_TRUE(k % 3 == 0 ? drawn == report.tiles : k % 3 == 1 ? drawn > 0 && drawn <= 16 : drawn == 0) << k;
+  }
+  device.vk().vkDestroyQueryPool(device.device(), queries, nullptr);
+  for (auto& times : ticks) std::nth_element(times.begin(), times.begin() + 7, times.end());
+  std::printf("an interface of 100 panels: one text changes %.3f, nothing changes %.4f of a whole recording's time\n",
+              ticks[1][7] / ticks[0][7], ticks[2][7] / ticks[0][7]);
 }
 
 TEST_F(KeepTest, WrongCallsAreRefused) {

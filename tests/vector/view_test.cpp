@@ -146,10 +146,8 @@ TEST_F(CanvasTest, KeptViewsAreThoseOfWholeRecordings) {
     GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
     ASSERT_EQ(gpgpGetCanvasReport(canvas, &report), GPGP_SUCCESS);
     ASSERT_EQ(gpgpGetCanvasReport(canvas, &report), GPGP_SUCCESS);
-    if (k % 2)
-      EXPECT_EQ(report.tilesDrawn, 0u) << k;
-    else if (k)
-      EXPECT_TRUE(report.tilesDrawn > 0 && report.tilesDrawn < report.tiles / 2) << k << ": " << report.tilesDrawn;
+    const bool some = report.tilesDrawn > 0 && report.tilesDrawn < report.tiles / 2;
+    EXPECT_TRUE(k == 0 || (k % 2 ? report.tilesDrawn == 0 : some)) << k << ": " << report.tilesDrawn;
     EXPECT_EQ(one.bytes(), other.bytes()) << k;
   }
   for (const GpgpHistory history : {kept, whole}) gpgpDestroyHistory(history);
