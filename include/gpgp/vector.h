@@ -258,11 +258,15 @@ typedef struct GpgpSvgSource {
    *  unsupported. */
   GpgpSvgTextFn textFn;
   void* textUserData;
+  /** VkPhysicalDeviceLimits::maxStorageBufferRange of the devices that the drawing is for; 0: 2^32 - 1. A drawing whose
+   *  outlines need more bytes is refused (UNSUPPORTED) as soon as that is known, not when all of it is converted. */
+  uint32_t maxStorageBufferRange;
 } GpgpSvgSource;
 #define GPGP_SVG_SOURCE_INIT GPGP_INIT(GpgpSvgSource, GPGP_STRUCTURE_SVG_SOURCE)
 
 /** Converts an SVG to a baked drawing (.gpgpv). In libgpgp_compiler. Free the blob with gpgpFreeBlob.
- *  Errors: INVALID_DATA (not an SVG), INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. @threads any @lifetime call */
+ *  Errors: INVALID_DATA (not an SVG), INVALID_ARGUMENT, UNSUPPORTED (too many outlines), OUT_OF_HOST_MEMORY.
+ *  @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCompileSvg(const GpgpSvgSource* source, GpgpBlob* blob);
 
 /** A small drawing under a key. */

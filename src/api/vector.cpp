@@ -50,11 +50,13 @@ GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCrea
       if (!base->kept()) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "base was not made editable");
     }
     const std::span edits(info->edits, info->editCount);
+    const bool flattened = info->methods == 0 || (info->methods & GPGP_DRAWING_FLATTENED);
+    const uint64_t mostBytes = flattened ? (*context)->device.limits.maxStorageBufferRange : UINT64_MAX;
     const auto make = [&]() -> Result<Drawing> {
-      if (base) return replacePaths(base->kept()->drawing, edits, memory);
+      if (base) return replacePaths(base->kept()->drawing, edits, memory, mostBytes);
       if (info->paths)
         return makeDrawing(std::span(info->paths, info->pathCount), std::span(info->groups, info->groupCount), memory,
-                           &(*context)->jobSystem);
+                           &(*context)->jobSystem, nullptr, mostBytes);
       if (info->data) return loadBaked(std::span(static_cast<const std::byte*>(info->data), info->size), memory);
       const auto bytes = (*context)->readFile(info->filePath);
       if (!bytes) return bytes.error();

@@ -218,6 +218,30 @@ TEST(LanguageNumbers, WhatConstantsCannotBeIsAnError) {
   EXPECT_EQ(ofRules("A = Translate(ShapeSize(X) / ShapePos(X),0,0) T;"), Messages{}); // a matter of the shape
 }
 
+TEST(LanguageNumbers, RoofsHaveFormsMeasuresAnglesAndFaces) {
+  const std::string form = "the form of a roof is 0 to 7; this is ", face = "the face of a roof is 0 to 4; this is ",
+                    measure = "the measure of a roof is 0 (height), 1 (rise by run) or 2 (degrees); this is ",
+                    angle = "the angle of a roof is less than 90 degrees; this is ";
+  const auto roof = [](const char* values) { return ofRules(std::string("A = RaiseRoof(") + values + ") T;"); };
+  EXPECT_EQ(roof("8,0,1"), Messages{"3:15: error: " + form + "8"});
+  EXPECT_EQ(roof("-1,0,1"), Messages{"3:15: error: " + form + "-1"});
+  EXPECT_EQ(roof("2 * 5,0,1"), Messages{"3:17: error: " + form + "10"});
+  EXPECT_EQ(roof("0,3,1"), Messages{"3:17: error: " + measure + "3"});
+  EXPECT_EQ(roof("0,2,90"), Messages{"3:19: error: " + angle + "90"});
+  EXPECT_EQ(roof("0,2,-120.5"), Messages{"3:19: error: " + angle + "-120.5"});
+  EXPECT_EQ(roof("9,7,1"), (Messages{"3:15: error: " + form + "9", "3:17: error: " + measure + "7"}));
+  EXPECT_EQ(roof("0,1,90"), Messages{}) << "a slope";
+  EXPECT_EQ(roof("7,2,89"), Messages{});
+  EXPECT_EQ(roof("ShapeSize(X),ShapeSize(Y),ShapeSize(Z)"), Messages{}) << "a matter of the shape";
+  const auto side = [](const char* n) {
+    return ofRules(std::string("A = RaiseRoof(0,0,1) ToRoofFace(") + n + ",0,0) T;");
+  };
+  EXPECT_EQ(side("4"), Messages{});
+  EXPECT_EQ(side("5"), Messages{"3:33: error: " + face + "5"});
+  EXPECT_EQ(side("-0.5"), Messages{"3:33: error: " + face + "-0.5"});
+  EXPECT_EQ(side("ShapeSize(X)"), Messages{});
+}
+
 TEST(LanguageNumbers, WhatIsSetHasToBeOne) {
   const std::string text = "var v = 1;\naxiom Box A;\nterminal T (1,0);\nA = Translate(1 / v,0,0) T;";
   const auto said = [&](float value) {

@@ -4,6 +4,7 @@
 #include "vector/patch/drawing.h"
 #include "vector/patch/inversions.h"
 #include "vector/patch/status.h"
+#include "vector/raster/segments.h"
 #include "vector/shared/curve.h"
 
 #include <gtest/gtest.h>
@@ -256,6 +257,87 @@ TEST(Crossings, ClipsEditsAndWhatIsLeftEmptyKnowTheLimit) {
   ASSERT_TRUE(none);
   EXPECT_EQ(leftEmpty.size(), 2u);
   EXPECT_TRUE(none->patches.empty());
+}
+
+/// How many segments a path's outline has, level ones not counted.
+size_t segmentsOf(const GpgpPath& path) {
+  const auto drawing = vector::makeDrawing(std::span(&path, 1), heap());
+  EXPECT_TRUE(drawing) << drawing.error().text;
+  if (!drawing) return 0;
+  const auto outlines = vector::makeOutlines(*drawing, heap());
+  return static_cast<size_t>(std::count_if(outlines.segments.begin(), outlines.segments.end(),
+                                           [](const auto& s) { return s.ends.y != s.ends.w; }));
+}
+
+TEST(OutlineRoom, WhatIsTakenIsWhatOutlinesHave) {
+  constexpr uint64_t kBytes = sizeof(shader::SegmentRecord);
+  const TestPath paths[] = {random(200, true), random(200, false), bars(30), fan(60), sharedSides(40)};
+  for (const TestPath& path : paths)
+    for (const GpgpFillRule rule : {GPGP_FILL_NON_ZERO, GPGP_FILL_EVEN_ODD}) {
+      GpgpPath view = path.view();
+      view.fillRule = rule;
+      const size_t segments = segmentsOf(view);
+      ASSERT_GT(segments, 0u);
+      const GpgpPath both[] = {view, view};
+      EXPECT_TRUE(vector::makeDrawing(std::span(both), {}, heap(), nullptr, nullptr, 2 * segments * kBytes));
+      const auto refused =
+          vector::makeDrawing(std::span(both), {}, heap(), nullptr, nullptr, (2 * segments - 1) * kBytes);
+      ASSERT_FALSE(refused);
+      EXPECT_EQ(refused.error().code, GPGP_ERROR_UNSUPPORTED);
+      EXPECT_NE(std::string(refused.error().text).find("paths[1]: the drawing's outlines need more than "),
+                std::string::npos)
+          << refused.error().text;
+      // Clips take of it as well, and so do edits.
+      GpgpPath inside = view;
+      inside.group = 1;
+      const GpgpPathGroup group{0, 1, &view, 1};
+      EXPECT_TRUE(vector::makeDrawing({&inside, 1}, {&group, 1}, heap(), nullptr, nullptr, 2 * segments * kBytes));
+      EXPECT_FALSE(
+          vector::makeDrawing({&inside, 1}, {&group, 1}, heap(), nullptr, nullptr, (2 * segments - 1) * kBytes));
+      const auto base = vector::makeDrawing(std::span(both), heap());
+      ASSERT_TRUE(base);
+      const GpgpPathEdit edit{1, view};
+      EXPECT_TRUE(vector::replacePaths(*base, {&edit, 1}, heap(), segments * kBytes));
+      EXPECT_FALSE(vector::replacePaths(*base, {&edit, 1}, heap(), (segments - 1) * kBytes));
+    }
+}
+
+TEST(OutlineRoom, LeastSegmentsAreNeverMoreThanThereAre) {
+  const TestPath paths[] = {random(300, true), random(300, false), random(300, true, 4, 1e5f), bars(60),
+                            fan(60),           fan(150),           nearlyTheSame(10),          sharedSides(100)};
+  for (const TestPath& path : paths)
+    for (const GpgpFillRule rule : {GPGP_FILL_NON_ZERO, GPGP_FILL_EVEN_ODD}) {
+      GpgpPath view = path.view();
+      view.fillRule = rule;
+      std::pmr::vector<vector::Monotone> pieces(heap());
+      ASSERT_TRUE(vector::outline(view, pieces));
+      vector::mergeCoincident(pieces);
+      EXPECT_LE(vector::leastSegments(pieces, rule, SIZE_MAX, heap()), segmentsOf(view)) << &path - paths;
+    }
+  GpgpPath tangle = paths[0].view();
+  tangle.fillRule = GPGP_FILL_EVEN_ODD;
+  std::pmr::vector<vector::Monotone> pieces(heap());
+  ASSERT_TRUE(vector::outline(tangle, pieces));
+  vector::mergeCoincident(pieces);
+  EXPECT_GT(vector::leastSegments(pieces, tangle.fillRule, SIZE_MAX, heap()), segmentsOf(tangle) / 2);
+}
+
+TEST(OutlineRoom, WhatDoesNotFitIsRefusedSoon) {
+  constexpr uint64_t kBound = 1 << 27; // what a software device binds
+  const TestPath path = random(2500, true);
+  GpgpPath view = path.view();
+  view.fillRule = GPGP_FILL_EVEN_ODD; // each crossing is a corner: 300 MB
+  const auto refused = [&](std::span<const GpgpPath> paths) {
+    return seconds([&] { EXPECT_FALSE(vector::makeDrawing(paths, {}, heap(), nullptr, nullptr, kBound)); });
+  };
+  const double converted = seconds([&] { EXPECT_TRUE(vector::makeDrawing(std::span(&view, 1), heap())); });
+  EXPECT_LT(refused({&view, 1}), 0.6 * converted);
+  // Many that would fit one by one: not all of them are converted.
+  const TestPath small = random(400, true, 7);
+  std::vector<GpgpPath> many(300, small.view());
+  for (GpgpPath& one : many) one.fillRule = GPGP_FILL_EVEN_ODD;
+  const double each = seconds([&] { EXPECT_TRUE(vector::makeDrawing(std::span(many).first(5), heap())); }) / 5;
+  EXPECT_LT(refused(many), 0.25 * 300 * each);
 }
 
 TEST(Crossings, InversionsAreCounted) {

@@ -196,6 +196,9 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   const Size asked = sizeAsked(options, static_cast<double>(shown[2]), static_cast<double>(shown[3]));
   source.scale = scaleInto(asked, bytes, page);
   if (options.zoom > 1) source.scale = std::min(std::max(source.scale, 1.0f) * static_cast<float>(options.zoom), 1e6f);
+  Session session(common);
+  host::HeadlessDevice& device = session.device();
+  source.maxStorageBufferRange = device.properties().limits.maxStorageBufferRange;
   const Result<Blob> blob = compileSvg(source);
   if (!blob) throw Failure(messages.count() ? messages.failure() : name + ": " + blob.name());
   messages.finish();
@@ -205,8 +208,6 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
     throw Failure(name + ": the reference knows no images; draw it without --reference");
   if (!stages.failure.empty()) throw Failure(stages.failure);
 
-  Session session(common);
-  host::HeadlessDevice& device = session.device();
   GpgpDrawingCreateInfo drawingInfo = GPGP_DRAWING_CREATE_INFO_INIT;
   drawingInfo.label = name.c_str();
   drawingInfo.data = blob->data();

@@ -1,6 +1,7 @@
 // The stages in a row, and the tables that the GPU reads.
 #include "vector/geometry/order.h"
 #include "vector/patch/drawing.h"
+#include "vector/patch/inversions.h"
 
 #include <algorithm>
 #include <array>
@@ -64,6 +65,22 @@ core::Error tooManyPatches() {
   return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing needs more than %u patches", shader::kEntryPatch);
 }
 
+/// Whether the outline of pieces, were each of their crossings a corner of it, would not fit. Cheap where few lie
+/// beside each other.
+bool mayOutgrow(std::span<const Monotone> pieces, const OutlineRoom& room, std::pmr::memory_resource* memory) {
+  constexpr double kMany = 256; // with fewer beside each other, conversion takes no time worth saving
+  if (static_cast<double>(pieces.size()) < kMany) return false;
+  double top = pieces[0].top(), bottom = pieces[0].bottom(), heights = 0;
+  for (const Monotone& piece : pieces) {
+    top = std::min(top, piece.top());
+    bottom = std::max(bottom, piece.bottom());
+    heights += piece.bottom() - piece.top();
+  }
+  if (!(heights > kMany * (bottom - top))) return false;
+  const size_t crossings = leastCrossings(pieces, top, bottom, 32, kMaxCrossings, memory);
+  return crossings <= kMaxCrossings && !room.has(2 * uint64_t(crossings)); // more are refused anyway, by themselves
+}
+
 } // namespace
 
 void addInk(const PatchRecord& patch, bool first, float (&bounds)[4]) {
@@ -72,10 +89,11 @@ void addInk(const PatchRecord& patch, bool first, float (&bounds)[4]) {
     bounds[side] = first ? box[side] : side < 2 ? std::min(bounds[side], box[side]) : std::max(bounds[side], box[side]);
 }
 
-core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, std::optional<core::Error>* tooMany) {
+core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, OutlineRoom& room,
+                           std::optional<core::Error>* tooMany) {
   // What the stages leave to each other goes at once; small paths find room here.
-  alignas(std::max_align_t) std::byte room[32 << 10];
-  std::pmr::monotonic_buffer_resource scratch(room, sizeof room, drawing.curves.get_allocator().resource());
+  alignas(std::max_align_t) std::byte nearby[32 << 10];
+  std::pmr::monotonic_buffer_resource scratch(nearby, sizeof nearby, drawing.curves.get_allocator().resource());
   std::pmr::memory_resource* memory = &scratch;
   std::pmr::vector<Monotone> pieces(memory);
   pieces.reserve(path.verbCount + path.verbCount / 2);
@@ -84,8 +102,11 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, std::optional
   mergeCoincident(pieces);
   std::pmr::vector<Cut> cuts(memory);
   std::pmr::vector<Slab> slabs(memory);
+  const GpgpFillRule rule = path.stroke ? GPGP_FILL_NON_ZERO : path.fillRule;
+  if (mayOutgrow(pieces, room, memory) && !room.has(leastSegments(pieces, rule, room.left(), memory)))
+    return room.error();
   auto swept = findCrossings(pieces, cuts);
-  if (swept) swept = sweep(pieces, cuts, path.stroke ? GPGP_FILL_NON_ZERO : path.fillRule, slabs);
+  if (swept) swept = sweep(pieces, cuts, rule, slabs);
   if (!swept) {
     if (!tooMany) return swept;
     *tooMany = swept.error();
@@ -113,9 +134,14 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, std::optional
   // A piece's slabs mostly follow each other, so where one ends is where the next begins.
   struct Last {
     float y;
+    int side; ///< 1: the patch lies right of the piece, -1: left
     double x;
   };
-  std::pmr::vector<Last> lasts(pieces.size(), Last{std::numeric_limits<float>::quiet_NaN(), 0}, memory);
+  std::pmr::vector<Last> lasts(pieces.size(), Last{std::numeric_limits<float>::quiet_NaN(), 0, 0}, memory);
+  uint64_t segments = 0; // of the outline, but for level ones
+  const auto segmentGoesOn = [&](uint32_t piece, float y, int side) {
+    return lasts[piece].y == y && lasts[piece].side == side;
+  };
   const auto known = [&](uint32_t piece, float y) { return lasts[piece].y == y; };
   /// Left's and right's x at the top and bottom of a slab, in this order.
   const auto corners = [&](const Slab& slab) {
@@ -130,8 +156,10 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, std::optional
       top[1] = right.xAt(y);
     const double bottomY = static_cast<double>(slab.bottom);
     const auto bottom = xsAt(left, bottomY, right, bottomY);
-    lasts[slab.left] = {slab.bottom, bottom[0]};
-    lasts[slab.right] = {slab.bottom, bottom[1]};
+    segments += !segmentGoesOn(slab.left, slab.top, 1);
+    segments += !segmentGoesOn(slab.right, slab.top, -1);
+    lasts[slab.left] = {slab.bottom, 1, bottom[0]};
+    lasts[slab.right] = {slab.bottom, -1, bottom[1]};
     return std::array{top, bottom};
   };
   const uint32_t pathIndex = static_cast<uint32_t>(drawing.paths.size());
@@ -149,6 +177,7 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, std::optional
     drawing.patches.push_back(p);
     addInk(p, drawing.patches.size() == 1, drawing.bounds);
   }
+  if (!room.take(segments)) return room.error();
   PathRecord record{};
   record.color = {path.color[0], path.color[1], path.color[2], path.color[3]};
   if (path.gradient) {
@@ -197,8 +226,8 @@ core::Result<void> append(const Drawing& part, Drawing& drawing) {
 
 namespace {
 
-core::Result<Drawing> convert(std::span<const GpgpPath> paths, size_t first, std::pmr::memory_resource* memory,
-                              std::pmr::vector<LeftEmpty>* leftEmpty) {
+core::Result<Drawing> convert(std::span<const GpgpPath> paths, size_t first, OutlineRoom& room,
+                              std::pmr::memory_resource* memory, std::pmr::vector<LeftEmpty>* leftEmpty) {
   Drawing drawing(memory);
   drawing.paths.reserve(paths.size());
   size_t verbs = 0;
@@ -206,8 +235,9 @@ core::Result<Drawing> convert(std::span<const GpgpPath> paths, size_t first, std
   drawing.curves.reserve(verbs + verbs / 4); // what most need, so that little is copied while they grow
   drawing.patches.reserve(verbs + verbs / 4);
   for (size_t i = 0; i < paths.size(); ++i) {
+    if (!room.has(0)) return room.error(); // others have taken it
     std::optional<core::Error> tooMany;
-    if (auto ok = addPath(paths[i], drawing, leftEmpty ? &tooMany : nullptr); !ok)
+    if (auto ok = addPath(paths[i], drawing, room, leftEmpty ? &tooMany : nullptr); !ok)
       return core::makeError(ok.error().code, "paths[%zu]: %s", first + i, ok.error().text);
     if (tooMany) leftEmpty->push_back({0, first + i, *tooMany});
   }
@@ -218,6 +248,7 @@ core::Result<Drawing> convert(std::span<const GpgpPath> paths, size_t first, std
 struct Batch {
   std::span<const GpgpPath> paths;
   size_t first;
+  OutlineRoom* room;
   std::pmr::memory_resource* memory;
   bool mayLeaveEmpty;
   std::pmr::vector<LeftEmpty> leftEmpty;
@@ -226,7 +257,7 @@ struct Batch {
   static void GPGP_CALL run(void* batches, uint32_t index) {
     Batch& b = static_cast<Batch*>(batches)[index];
     try {
-      b.made.emplace(convert(b.paths, b.first, b.memory, b.mayLeaveEmpty ? &b.leftEmpty : nullptr));
+      b.made.emplace(convert(b.paths, b.first, *b.room, b.memory, b.mayLeaveEmpty ? &b.leftEmpty : nullptr));
     } catch (...) { // bad_alloc; nothing else is thrown. An engine's job must not see it
       b.made.reset();
     }
@@ -236,7 +267,10 @@ struct Batch {
 } // namespace
 
 core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory,
-                                  const GpgpJobSystem* jobs, std::pmr::vector<LeftEmpty>* leftEmpty, size_t first) {
+                                  const GpgpJobSystem* jobs, std::pmr::vector<LeftEmpty>* leftEmpty, size_t first,
+                                  OutlineRoom* given) {
+  OutlineRoom own;
+  OutlineRoom& room = given ? *given : own;
   constexpr uint64_t kVerbsOfBatch = 1000; // some tenths of a millisecond
   core::Result<Drawing> drawing = Drawing(memory);
   std::pmr::vector<Batch> batches(memory);
@@ -244,8 +278,13 @@ core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::mem
     uint64_t verbs = kVerbsOfBatch;
     for (size_t i = 0; i < paths.size(); ++i) {
       if (verbs >= kVerbsOfBatch) {
-        batches.push_back(
-            {paths.subspan(i, 0), first + i, memory, leftEmpty != nullptr, std::pmr::vector<LeftEmpty>(memory), {}});
+        batches.push_back({paths.subspan(i, 0),
+                           first + i,
+                           &room,
+                           memory,
+                           leftEmpty != nullptr,
+                           std::pmr::vector<LeftEmpty>(memory),
+                           {}});
         verbs = 0;
       }
       const size_t begin = batches.back().first - first;
@@ -262,7 +301,7 @@ core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::mem
       if (leftEmpty) leftEmpty->insert(leftEmpty->end(), batch.leftEmpty.begin(), batch.leftEmpty.end());
     }
   } else {
-    drawing = convert(paths, first, memory, leftEmpty);
+    drawing = convert(paths, first, room, memory, leftEmpty);
     if (!drawing) return drawing;
   }
   drawing->viewport[0] = drawing->bounds[0];

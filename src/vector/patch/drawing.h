@@ -6,6 +6,7 @@
 #include "core/result.h"
 #include "vector/geometry/shape.h"
 #include "vector/patch/layers.h"
+#include "vector/patch/outline_room.h"
 #include "vector/shared/layout.h"
 
 #include <gpgp/vector.h>
@@ -95,8 +96,10 @@ core::Result<uint32_t> addGradient(const GpgpGradient& gradient, Drawing& drawin
 core::Result<uint32_t> addImage(const GpgpImagePaint& image, Drawing& drawing);
 
 /// All stages for one path; appends its patches, the curves they use and its colour. One that crosses itself more than
-/// kMaxCrossings times is an error; with `tooMany`, where the error goes then, it is appended without patches.
-core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, std::optional<core::Error>* tooMany = nullptr);
+/// kMaxCrossings times is an error; with `tooMany`, where the error goes then, it is appended without patches. One
+/// whose outline finds no room is an error; where it is known without looking for crossings, that is soon said.
+core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, OutlineRoom& room,
+                           std::optional<core::Error>* tooMany = nullptr);
 
 /// Grows bounds by the ink of a patch, whose own box has a float's step to spare; `first`: sets them.
 void addInk(const PatchRecord& patch, bool first, float (&bounds)[4]);
@@ -111,25 +114,27 @@ struct LeftEmpty {
 };
 
 /// The same with groups: their clips' paths come first, and paths know their clip and layer. Errors name the group.
+/// `mostBytes`: of its outlines on the GPU; UNSUPPORTED as soon as it is known that they need more.
 core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::span<const GpgpPathGroup> groups,
                                   std::pmr::memory_resource* memory, const GpgpJobSystem* jobs = nullptr,
-                                  std::pmr::vector<LeftEmpty>* leftEmpty = nullptr);
+                                  std::pmr::vector<LeftEmpty>* leftEmpty = nullptr, uint64_t mostBytes = UINT32_MAX);
 
 /// The drawing of paths in painting order; the same with and without jobs, which then call the memory resource side by
 /// side. Errors name the path, `first` being the first one; with `leftEmpty`, paths that cross themselves too often go
 /// there instead.
 core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory,
                                   const GpgpJobSystem* jobs = nullptr, std::pmr::vector<LeftEmpty>* leftEmpty = nullptr,
-                                  size_t first = 0);
+                                  size_t first = 0, OutlineRoom* room = nullptr);
 
 /// How many paths at the front are there for clips alone.
 uint32_t clipPaths(const Drawing& drawing);
 
 /// The drawing with some paths replaced, which alone are converted: the same tables as if all were converted anew. An
 /// index counts from the first path that is no clip's; of two edits of one path the later counts. Paths keep their clip
-/// and layer, and a page that is not just the ink stays. Errors name the edit or the path.
+/// and layer, and a page that is not just the ink stays. Errors name the edit or the path. `mostBytes`: as above, of
+/// the paths that are replaced.
 core::Result<Drawing> replacePaths(const Drawing& base, std::span<const GpgpPathEdit> edits,
-                                   std::pmr::memory_resource* memory);
+                                   std::pmr::memory_resource* memory, uint64_t mostBytes = UINT32_MAX);
 
 /// FNV-1a over 8-byte words: every input bit reaches the result.
 uint64_t checksum(std::span<const std::byte> bytes);

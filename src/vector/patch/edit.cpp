@@ -23,7 +23,7 @@ uint32_t clipPaths(const Drawing& drawing) {
 }
 
 core::Result<Drawing> replacePaths(const Drawing& base, std::span<const GpgpPathEdit> edits,
-                                   std::pmr::memory_resource* memory) {
+                                   std::pmr::memory_resource* memory, uint64_t mostBytes) {
   const uint32_t hidden = clipPaths(base), shown = static_cast<uint32_t>(base.paths.size()) - hidden;
   std::pmr::vector<const GpgpPath*> replaced(base.paths.size(), nullptr, memory);
   for (size_t i = 0; i < edits.size(); ++i) {
@@ -41,13 +41,14 @@ core::Result<Drawing> replacePaths(const Drawing& base, std::span<const GpgpPath
   drawing.layers = base.layers;
   constexpr uint32_t kNone = UINT32_MAX;
   std::pmr::vector<uint32_t> places(base.curves.size(), kNone, memory);
+  OutlineRoom room(mostBytes);
   size_t patch = 0, firstShown = 0;
   for (uint32_t i = 0; i < base.paths.size(); ++i) {
     if (i == hidden) firstShown = drawing.patches.size();
     const size_t first = patch;
     while (patch < base.patches.size() && base.patches[patch].path == i) ++patch;
     if (replaced[i]) {
-      if (auto ok = addPath(*replaced[i], drawing); !ok)
+      if (auto ok = addPath(*replaced[i], drawing, room); !ok)
         return core::makeError(ok.error().code, "edits, path %u: %s", i - hidden, ok.error().text);
       drawing.paths.back().clip = base.paths[i].clip;
       drawing.paths.back().layer = base.paths[i].layer;

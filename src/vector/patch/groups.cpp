@@ -20,9 +20,10 @@ struct Nearest { // at or above a group: 1 + index; 0: none
 class GroupedDrawing {
 public:
   GroupedDrawing(std::span<const GpgpPath> paths, std::span<const GpgpPathGroup> groups, Drawing& drawing,
-                 std::pmr::memory_resource* memory, const GpgpJobSystem* jobs, std::pmr::vector<LeftEmpty>* leftEmpty)
-      : paths_(paths), groups_(groups), drawing_(drawing), memory_(memory), jobs_(jobs), leftEmpty_(leftEmpty),
-        layered_(groups.size(), 0, memory), needed_(groups.size(), 0, memory), nearest_(memory),
+                 std::pmr::memory_resource* memory, const GpgpJobSystem* jobs, std::pmr::vector<LeftEmpty>* leftEmpty,
+                 OutlineRoom& room)
+      : room_(room), paths_(paths), groups_(groups), drawing_(drawing), memory_(memory), jobs_(jobs),
+        leftEmpty_(leftEmpty), layered_(groups.size(), 0, memory), needed_(groups.size(), 0, memory), nearest_(memory),
         sequences_(groups.size(), 0, memory), seen_(groups.size(), 0, memory), pathsOf_(memory) {}
 
   Result<void> make() {
@@ -229,7 +230,7 @@ private:
     path.gradient = nullptr;
     path.image = nullptr;
     std::optional<core::Error> tooMany;
-    if (auto ok = addPath(path, drawing_, leftEmpty_ ? &tooMany : nullptr); !ok)
+    if (auto ok = addPath(path, drawing_, room_, leftEmpty_ ? &tooMany : nullptr); !ok)
       return makeError(ok.error().code, "groups[%u].clip[%u]: %s", group, k, ok.error().text);
     if (tooMany) leftEmpty_->push_back({1 + group, k, *tooMany});
     return {};
@@ -268,7 +269,7 @@ private:
     for (size_t i = 0; i < paths.size();) { // as many as follow each other
       size_t end = i + 1;
       while (end < paths.size() && paths[end] == paths[end - 1] + 1) ++end;
-      auto painted = makeDrawing(paths_.subspan(paths[i], end - i), memory_, jobs_, leftEmpty_, paths[i]);
+      auto painted = makeDrawing(paths_.subspan(paths[i], end - i), memory_, jobs_, leftEmpty_, paths[i], &room_);
       if (!painted) return painted.error();
       for (size_t k = i; k < end; ++k)
         if (const uint32_t group = paths_[paths[k]].group; group && group != owner) {
@@ -304,6 +305,7 @@ private:
   }
 
   static constexpr uint8_t kReferred = 1, kDone = 2;
+  OutlineRoom& room_;
   std::span<const GpgpPath> paths_;
   std::span<const GpgpPathGroup> groups_;
   Drawing& drawing_;
@@ -339,11 +341,12 @@ void findBounds(Drawing& drawing, std::pmr::memory_resource* memory) {
 
 Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::span<const GpgpPathGroup> groups,
                             std::pmr::memory_resource* memory, const GpgpJobSystem* jobs,
-                            std::pmr::vector<LeftEmpty>* leftEmpty) {
+                            std::pmr::vector<LeftEmpty>* leftEmpty, uint64_t mostBytes) {
+  OutlineRoom room(mostBytes);
   if (groups.empty() && std::all_of(paths.begin(), paths.end(), [](const GpgpPath& p) { return p.group == 0; }))
-    return makeDrawing(paths, memory, jobs, leftEmpty);
+    return makeDrawing(paths, memory, jobs, leftEmpty, 0, &room);
   Result<Drawing> drawing = Drawing(memory);
-  GroupedDrawing grouped(paths, groups, *drawing, memory, jobs, leftEmpty);
+  GroupedDrawing grouped(paths, groups, *drawing, memory, jobs, leftEmpty, room);
   if (auto ok = grouped.make(); !ok) return ok.error();
   if (drawing->plan.empty()) {
     std::fill_n(drawing->bounds, 4, 0.0f);

@@ -40,6 +40,8 @@ public:
     // each piece's own lie far apart where there are millions.
     std::pmr::vector<uint64_t> cuts(memory_);
     cuts.reserve(cutsOfPieces.size());
+    // Where each crossing is a corner of the region there are about three slabs for two of them.
+    if (rule_ == GPGP_FILL_EVEN_ODD) slabs_.reserve(slabs_.size() + cutsOfPieces.size() * 4 / 5 + count);
     for (const Cut& cut : cutsOfPieces) cuts.push_back(uint64_t(heightBits(cut.y)) << 32 | cut.piece);
     sortKeys(cuts);
     const auto heightOfCut = [&cuts](size_t i) { return heightOf(static_cast<uint32_t>(cuts[i] >> 32)); };

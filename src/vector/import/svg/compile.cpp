@@ -37,7 +37,9 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
   const std::vector<GpgpPath>& paths = views.paths;
   const auto parsed = Clock::now();
   std::pmr::vector<vector::LeftEmpty> leftEmpty(memory);
-  auto drawing = vector::makeDrawing(paths, views.groups, memory, source.jobSystem, &leftEmpty);
+  const uint64_t range = source.maxStorageBufferRange ? source.maxStorageBufferRange : UINT32_MAX;
+  auto drawing = vector::makeDrawing(paths, views.groups, memory, source.jobSystem, &leftEmpty,
+                                     source.methods == GPGP_DRAWING_IN_PASS ? UINT64_MAX : range);
   const auto converted = Clock::now();
   if (!drawing) return fail(drawing.error().code, drawing.error().text);
   for (const vector::LeftEmpty& left : leftEmpty) {
@@ -60,7 +62,7 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
     }
     drawing->words = std::move(patches->words);
   }
-  vector::Drawing kept = *drawing; // for the stages, whole
+  vector::Drawing kept = source.stageFn ? vector::Drawing(*drawing) : std::move(*drawing); // stages show all of it
   if (source.methods == GPGP_DRAWING_IN_PASS) kept.curves.clear(), kept.patches.clear();
   const auto bytes = vector::bake(kept, memory);
   const GpgpBlob made = core::copyToBlob(std::as_bytes(std::span(bytes)));

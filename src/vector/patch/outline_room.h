@@ -1,0 +1,95 @@
+// How much of the GPU's memory a drawing's outlines take, known while the drawing is made: what a device cannot bind is
+// refused then, not when all of it has been converted.
+#pragma once
+#include "core/result.h"
+#include "vector/geometry/curve.h"
+#include "vector/shared/layout.h"
+
+#include <gpgp/vector.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+namespace gpgp::vector {
+
+/// What outlines may take. Paths that are converted side by side take from the same room.
+class OutlineRoom {
+public:
+  /// No device binds more than the default: VkPhysicalDeviceLimits::maxStorageBufferRange has 32 bits.
+  explicit OutlineRoom(uint64_t bytes = UINT32_MAX) : bytes_(bytes) {}
+
+  /// Whether there is room for so many segments besides those that were taken.
+  bool has(uint64_t segments) const { return taken_.load(std::memory_order_relaxed) + segments <= most(); }
+  bool take(uint64_t segments) { return taken_.fetch_add(segments, std::memory_order_relaxed) + segments <= most(); }
+  uint64_t left() const {
+    const uint64_t taken = taken_.load(std::memory_order_relaxed);
+    return taken < most() ? most() - taken : 0;
+  }
+  core::Error error() const {
+    return core::makeError(GPGP_ERROR_UNSUPPORTED,
+                           "the drawing's outlines need more than %llu bytes, which is what a device binds at most",
+                           static_cast<unsigned long long>(bytes_));
+  }
+
+private:
+  uint64_t most() const { return bytes_ / sizeof(shader::SegmentRecord); }
+  uint64_t bytes_;
+  std::atomic<uint64_t> taken_{0};
+};
+
+/// No more than how many segments the outline of the pieces' region has, without looking for crossings: a piece has one
+/// for each time that it begins to bound the region, or to bound it on its other side, from one row of many to the
+/// next. Rows are as many as take some tenths of a second at most. Ends early beyond `limit`.
+inline uint64_t leastSegments(std::span<const Monotone> pieces, GpgpFillRule rule, uint64_t limit,
+                              std::pmr::memory_resource* memory) {
+  struct Active {
+    uint32_t piece;
+    int8_t side; ///< of the piece that lies inside, in the row above; 0: both or none
+    double x;
+  };
+  constexpr double kMostPlaces = 1 << 23; ///< looked at
+  constexpr double kMostRows = 1 << 14;
+  double top = INFINITY, bottom = -INFINITY, heights = 0;
+  for (const Monotone& piece : pieces) {
+    top = std::min(top, piece.top());
+    bottom = std::max(bottom, piece.bottom());
+    heights += piece.bottom() - piece.top();
+  }
+  if (!(bottom > top)) return 0;
+  const uint32_t rows =
+      static_cast<uint32_t>(std::clamp(kMostPlaces / std::max(heights / (bottom - top), 1.0), 1.0, kMostRows));
+  std::pmr::vector<uint32_t> order(pieces.size(), 0, memory);
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return pieces[a].top() < pieces[b].top(); });
+  std::pmr::vector<Active> active(memory);
+  size_t next = 0;
+  uint64_t segments = 0;
+  for (uint32_t i = 0; i < rows && segments <= limit; ++i) {
+    const double y = top + (bottom - top) * (i + 0.5) / rows;
+    std::erase_if(active, [&](const Active& a) { return pieces[a.piece].bottom() <= y; });
+    for (; next < order.size() && pieces[order[next]].top() <= y; ++next)
+      if (pieces[order[next]].bottom() > y) active.push_back({order[next], 0, 0});
+    for (Active& a : active) a.x = pieces[a.piece].xAt(y);
+    std::sort(active.begin(), active.end(), [](const Active& l, const Active& r) { return l.x < r.x; });
+    // Which of two that are as good as one comes first is not known: neither counts.
+    const auto same = [](double a, double b) { return b - a <= 1e-6 * (std::abs(a) + std::abs(b)); };
+    const auto inside = [rule](int winding) { return rule == GPGP_FILL_EVEN_ODD ? winding % 2 != 0 : winding != 0; };
+    int winding = 0;
+    for (size_t k = 0; k < active.size(); ++k) {
+      const bool before = inside(winding);
+      winding += pieces[active[k].piece].winding;
+      const auto side = static_cast<int8_t>(inside(winding) - before);
+      if ((k > 0 && same(active[k - 1].x, active[k].x)) ||
+          (k + 1 < active.size() && same(active[k].x, active[k + 1].x)))
+        continue;
+      segments += side != 0 && side != active[k].side;
+      active[k].side = side;
+    }
+  }
+  return segments;
+}
+
+} // namespace gpgp::vector
