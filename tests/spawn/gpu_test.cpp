@@ -310,7 +310,7 @@ TEST_F(SpawnTest, RandomGrammarsEqualTheEvaluator) {
   makeSpawner({.maxColliders = 8192});
   uint32_t instances = 0;
   const uint32_t count = numberFrom("GPGP_TEST_GRAMMARS", 200); // more for a long run, which may begin later
-  const uint32_t least = count < 200 ? 0 : 100 * count; // instances: of few grammars, all can be small
+  const uint32_t least = count < 200 ? 0 : 100 * count;         // instances: of few grammars, all can be small
   for (uint32_t seed = numberFrom("GPGP_TEST_FIRST", 0), checked = 0; checked < count || instances < least;
        ++seed, ++checked) {
     ASSERT_LT(checked, 2 * count) << instances << " instances";
@@ -656,7 +656,7 @@ TEST_F(SpawnTest, DamagedKernelsAreRefused) {
     return result == GPGP_ERROR_INVALID_DATA ? text : "accepted";
   };
   const std::string begin = "gpgpCreateGrammar: kernel 0 of the baked grammar: ";
-  EXPECT_EQ(refused([&](auto& w) { w[graph] ^= 1; }), begin + "what follows is no kernel");
+  EXPECT_EQ(refused([&](auto& w) { w[graph] ^= 1; }), begin + "the data that follows is not a kernel");
   const std::string older = refused([&](auto& w) { w[graph + 1] = 1; });
   EXPECT_EQ(older.rfind(begin + "it was made in format 1; this library reads format ", 0), 0u) << older;
   EXPECT_NE(older.find(": bake the grammar again"), std::string::npos) << older;

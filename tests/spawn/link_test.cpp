@@ -219,7 +219,7 @@ TEST(Link, AliasesTellFilesOfOneNameApart) {
   for (const char* wrong : {"two words", "42", "a.b", "é"})
     EXPECT_EQ(linkMessages({{"a/x.pga", kHouse}, {"b/x.pga", kTree, {}, wrong}}),
               Messages{std::string("b/x.pga: error: the alias '") + wrong +
-                       "' is no name; expected letters, digits and _, not digits alone"});
+                       "' is not a name; expected letters, digits and _, not only digits"});
 }
 
 TEST(Link, BakedGrammarsLinkAsTheirTextDoes) { // and in all tests of linked text above
@@ -269,7 +269,7 @@ TEST(Link, BakedGrammarsLinkAsTheirTextDoes) { // and in all tests of linked tex
   EXPECT_NE(housed(whole.substr(0, whole.size() - 4)).at(0).find("of the baked grammar: it was cut"),
             std::string::npos);
   EXPECT_NE(housed(flipped).at(0).find("its checksum is wrong"), std::string::npos);
-  EXPECT_NE(housed(whole + "tail").at(0).find("what follows is no kernel"), std::string::npos);
+  EXPECT_NE(housed(whole + "tail").at(0).find("the data that follows is not a kernel"), std::string::npos);
 }
 
 TEST(Link, NeedsSources) {

@@ -12,7 +12,7 @@ namespace gpgp::test {
 namespace {
 using Vec = std::array<double, 4>;
 constexpr uint32_t kExactSamples = 64; // a pixel has this many by this many
-constexpr double kInside = 1.0 / 128; // pixels: half of what snapping moves a corner by, and the margin
+constexpr double kInside = 1.0 / 128;  // pixels: half of what snapping moves a corner by, and the margin
 
 struct Placed {
   std::array<Vec, 3> clip;
