@@ -12,8 +12,8 @@
 #     --jobs N          tests at once (default: half the processors)
 #     --no-benchmarks   tests alone
 #   tests/hardware.sh hash               of shaders/ and of the code that records them, as in hardware.json
-#
-# docs/results/hardware.json is the last whole run. tests/run.sh says when shaders have changed since.
+#   tests/hardware.sh changed [FILE]     a sentence: whether they have changed since the run in FILE
+#                                        (default: docs/results/hardware.json, the last whole run; tests/run.sh asks)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=build/release
@@ -27,6 +27,24 @@ usage() { sed -n '2,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"; }
 
 sourceHash() {
   git ls-files -s shaders src/core src/spawn src/vector src/visibility | sha256sum | cut -c1-16
+}
+
+changed() {
+  local file=${1:-docs/results/hardware.json} shown
+  if [[ ! -f $file ]]; then
+    echo "No whole run on hardware is recorded in ${file#"$PWD"/}: copy build/hardware/hardware.json of 'tests/hardware.sh run' there."
+    return
+  fi
+  value() { sed -nE "s/^ *\"$1\": \"(.*)\",?$/\1/p" "$file" | head -n1; }
+  shown="the last run on hardware ($(value device), $(value date), commit $(value commit))"
+  if ! git rev-parse --git-dir >/dev/null 2>&1; then
+    echo "This is no git checkout, so nothing is known of changes since $shown."
+  elif [[ $(sourceHash) == "$(value hash)" ]] &&
+    git diff --quiet HEAD -- shaders src/core src/spawn src/vector src/visibility; then
+    echo "Shaders and the code that records them are those of $shown."
+  else
+    echo "Shaders or the code that records them have CHANGED since $shown: run tests/hardware.sh run."
+  fi
 }
 
 pack() {
@@ -179,7 +197,7 @@ benchmarkCommands() {
 }
 
 case ${1:-} in
-pack | run) "$@" ;;
+pack | run | changed) "$@" ;;
 hash) sourceHash ;;
 -h | --help) usage ;;
 *) usage >&2 && exit 2 ;;

@@ -3,7 +3,8 @@
 # a second device, by passes of other devices, with fewer services), then a build of all but the tests with the second
 # compiler, then libgpgp for Windows under Wine, then loading threads under ThreadSanitizer, then all again under
 # AddressSanitizer and UndefinedBehaviorSanitizer.
-# Works as root or through sudo, asks nothing, can be run again. Ends with a summary; exits 1 where anything failed.
+# Works as root or through sudo, asks nothing, can be run again. Ends with a summary, which also says whether shaders
+# have changed since the last run on hardware; exits 1 where anything failed.
 #
 #   tests/run.sh            everything
 #   tests/run.sh --quick    release only
@@ -82,6 +83,7 @@ hasTimeFor() {
 finish() {
   say "summary, after $(((SECONDS - started) / 60)) min $(((SECONDS - started) % 60)) s"
   printf '   %s\n' "${summary[@]}"
+  printf '   %s\n' "$(tests/hardware.sh changed)"
   [[ $failed == no ]] || exit 1
   exit 0
 }

@@ -8,7 +8,7 @@
  *
  *   gpgpCreateAtlas, gpgpCreateAtlasRecorder -> gpgpPrewarm
  *   -> each frame: gpgpRecordPrepareVisibility with visibleBits and triangleSizes -> gpgpRecordPrepareAtlas
- *   -> the engine shades the listed tiles by indirect dispatches, one for each bucket of materials
+ *   -> the engine shades the listed tiles by indirect dispatches, one for each material bucket
  *   -> the engine displays, at its own rate: the fragment's triangle and barycentrics give a point in the atlas
  *   -> frames later: gpgpGetAtlasReport
  *
@@ -39,8 +39,8 @@ typedef struct GpgpAtlasCreateInfo {
   const void* pNext;
   const char* label;      /**< for messages and debug names; copied */
   uint32_t width, height; /**< texels, multiples of 128, at most 8192 each; 0: 4096 */
-  /** Largest triangleCount of its recordings, at most 2^25; 0: 4194304. Memory: 4.25 bytes each. Each recording goes
-   *  through all of them, so choose no more than the scene has. */
+  /** Largest triangleCount of its recordings, at most 2^25; 0: 4194304. Memory: 4.25 bytes each. Each recording
+   *  iterates over all of them, so choose no more than the scene has. */
   uint32_t maxTriangles;
 } GpgpAtlasCreateInfo;
 #define GPGP_ATLAS_CREATE_INFO_INIT GPGP_INIT(GpgpAtlasCreateInfo, GPGP_STRUCTURE_ATLAS_CREATE_INFO)
@@ -61,7 +61,7 @@ typedef struct GpgpAtlasRecorderCreateInfo {
   const void* pNext;
   GpgpRecorderCreateInfo base;
   uint32_t maxTriangles; /**< the largest maxTriangles of its atlases, at most 2^25; 0: 4194304 */
-  uint32_t maxBuckets;   /**< of materials, at most 32; 0: 1 */
+  uint32_t maxBuckets;   /**< material buckets, at most 32; 0: 1 */
 } GpgpAtlasRecorderCreateInfo;
 #define GPGP_ATLAS_RECORDER_CREATE_INFO_INIT                                                                           \
   GPGP_INIT(GpgpAtlasRecorderCreateInfo, GPGP_STRUCTURE_ATLAS_RECORDER_CREATE_INFO)
@@ -75,8 +75,8 @@ GPGP_API GpgpResult GPGP_CALL gpgpCreateAtlasRecorder(GpgpContext context, const
 /* ---------------------------------------------------------------- recording */
 
 /** One recording. Buffers marked "out" are written, all others are only read. All have STORAGE usage. An optional
- * buffer is left out by leaving it zero. Lists are in ascending order of triangles. What exceeds a list's size is not
- * written; the report and `counts` hold how many there are. */
+ *  buffer is left out by leaving it zero. Lists are in ascending order of triangles. What exceeds a list's size is not
+ *  written; the report and `counts` hold how many there are. */
 typedef struct GpgpAtlasInfo {
   GpgpStructureType sType;
   const void* pNext;
@@ -87,24 +87,25 @@ typedef struct GpgpAtlasInfo {
   uint32_t triangleCount;
   GpgpBuffer visibleBits;   /**< of GpgpVisibilityInfo, of one recording or of several that accumulated */
   GpgpBuffer triangleSizes; /**< likewise: GpgpTriangleSize[triangleCount] */
-  /** Texels for each pixel of a triangle's projected area, 2^-10 to 64; 0: 1. A block has room for it, so that it has 1
-   *  to 2 times as many, and hysteresis widens that to 0.8 to 2.7. */
+  /** Texels for each pixel of a triangle's projected area, 2^-10 to 64; 0: 1. Sizes are rounded up to a class, so a
+   *  triangle gets 1 to 2 times as many texels. Hysteresis widens this range to 0.8 to 2.7. */
   float texelsPerPixel;
   /** Optional: geometry set, draws and indices of the visibility recording. They tell which triangles are pairs. Needed
    *  in an atlas's first recording, and again after meshes, draws or triangle numbers have changed: triangles whose
-   *  pair is another one then lose their blocks and get new ones. Otherwise the atlas keeps what it knows. Without them
-   *  in any recording, all triangles are single. Draws that share triangle numbers must have the same indices. */
+   *  partner has changed then lose their blocks and get new ones. In other recordings the atlas keeps the pairs that it
+   *  knows. If no recording gives them, all triangles are single. Draws that share triangle numbers must have the same
+   *  indices. */
   GpgpAsset geometrySet;
   GpgpBuffer draws;      /**< GpgpVisibilityDraw[drawCount] */
   uint32_t drawCount;    /**< at most 65535; 0: pairs stay as they are */
   GpgpBuffer indices;    /**< the size is a multiple of 4, for UINT16 too */
   VkIndexType indexType; /**< UINT16 or UINT32 */
-  /** Optional: the bucket of materials that shades a triangle, a byte each, four in a word; ceil(triangleCount / 4)
-   *  words. Numbers from bucketCount on count as the last bucket. The block's triangle decides for its pair. */
+  /** Optional: the material bucket that shades each triangle, one byte a triangle; ceil(triangleCount / 4) words.
+   *  Numbers from bucketCount on count as the last bucket. The block's triangle decides for its pair. */
   GpgpBuffer buckets;
   uint32_t bucketCount; /**< at most the recorder's maxBuckets; 0: 1 */
-  /** Optional: a bit for each triangle, as in visibleBits. Of blocks that are neither new nor changed, only those with
-   * a bit set for one of their triangles are listed for shading. Left out: all blocks are. */
+  /** Optional: a bit for each triangle, as in visibleBits. New and changed blocks are always listed for shading. Others
+   *  are listed only if the bit of one of their triangles is set. Left out: all blocks are listed. */
   GpgpBuffer shadeBits;
   /** Out: uint32_t[triangleCount], each triangle's block for gpgp/shaders/atlas.h; 0: it has none. Rewritten as a whole
    *  by each recording. */
@@ -117,22 +118,24 @@ typedef struct GpgpAtlasInfo {
    *  first tile in `tiles`, [4] is how many it has. */
   GpgpBuffer dispatches;
   GpgpBuffer newBlocks;     /**< out, optional: uint32_t triangles whose blocks were made by this recording */
-  GpgpBuffer changedBlocks; /**< out, optional: likewise of blocks that have another size or place than before */
-  GpgpBuffer goneBlocks;    /**< out, optional: likewise of blocks that are no more */
-  GpgpBuffer counts; /**< out, optional: uint32_t[4], how many are new, changed and gone, and how many tiles to shade */
+  GpgpBuffer changedBlocks; /**< out, optional: likewise for blocks whose size or place has changed */
+  GpgpBuffer goneBlocks;    /**< out, optional: likewise for blocks that were freed */
+  GpgpBuffer counts; /**< out, optional: uint32_t[4]: numbers of new, changed and freed blocks, and of tiles to shade */
 } GpgpAtlasInfo;
 #define GPGP_ATLAS_INFO_INIT GPGP_INIT(GpgpAtlasInfo, GPGP_STRUCTURE_ATLAS_INFO)
 
-/** Gives each visible triangle a block, keeps those that are there, and lists tiles to shade and what has changed.
+/** Gives each visible triangle a block, keeps the blocks that exist already, and lists the tiles to shade and the
+ *  changes.
  *
- *  Where not all blocks fit, those of the least visible area are made one class smaller, then the next ones, until all
- *  fit; then again from the least. Only once all have 4 x 4 texels are blocks left out, those of the least area first.
- *  Both are counted. This goes by half octaves of area, each in 16 parts. Blocks grow again once an eighth of the atlas
- *  would remain free.
+ *  If not all blocks fit, blocks are made one class smaller, beginning with those of the smallest visible area, until
+ *  all fit. Where one such round does not suffice, another one follows. Only once all have 4 x 4 texels are blocks left
+ *  out, again beginning with the smallest area. The report counts both. The steps are half octaves of area, divided
+ *  into 16 parts each. Blocks grow again once an eighth of the atlas would remain free.
  *
- *  A block moves when its class changes; when the others of its class have room for those of its superblock, which
- *  then becomes free; and, all at once, when free superblocks are too few although the free texels suffice
- * (`repacked`).
+ *  A block moves in three cases:
+ *  - its class changes;
+ *  - the other superblocks of its class have room for all blocks of its superblock, which then becomes free;
+ *  - too few superblocks are free although enough texels are. All blocks then move at once (`repacked`).
  *
  *  NOT_READY: the atlas or geometry set is not resident, or the recorder is not prewarmed. Nothing is recorded.
  *  Errors: INVALID_ARGUMENT (the message names the field and what is allowed: a buffer that is missing, too small or
@@ -154,19 +157,20 @@ typedef struct GpgpAtlasReport {
   uint32_t blocks;                            /**< after the recording; newBlocks + changedBlocks + keptBlocks */
   uint32_t blocksByClass[GPGP_ATLAS_CLASSES]; /**< their sum is `blocks` */
   uint32_t newBlocks;
-  uint32_t changedBlocks; /**< of another size or place than before; vacatedBlocks and repacked ones included */
+  uint32_t changedBlocks; /**< whose size or place has changed; includes vacatedBlocks and repacked blocks */
   uint32_t keptBlocks;
   uint32_t goneBlocks;
   uint32_t vacatedBlocks;    /**< moved so that a nearly empty superblock becomes free */
-  uint32_t loweredBlocks;    /**< have fewer texels than their triangles ask for, for lack of room */
+  uint32_t loweredBlocks;    /**< with fewer texels than their triangles ask for, for lack of room */
   uint32_t droppedBlocks;    /**< of visible triangles, left out for lack of room */
   uint32_t droppedTriangles; /**< visible ones without a block */
   uint32_t tiles;            /**< to shade; tiles.size of 8 bytes each is needed */
   uint32_t superblocks;      /**< in use */
   uint32_t maxSuperblocks;   /**< of the atlas */
-  uint32_t pressure;         /**< 0: all blocks have their size. Each 1024 lower all blocks by a class. */
-  VkBool32 repacked;         /**< all blocks moved */
-  float fill;                /**< texels of blocks / texels of the atlas */
+  /** 0: all blocks have the size that they ask for. Each 1024 lower all blocks by one class. */
+  uint32_t pressure;
+  VkBool32 repacked; /**< all blocks moved */
+  float fill;        /**< texels of blocks / texels of the atlas */
   /** Share of superblocks in use that would be free if each class had no more than it needs. */
   float fragmentation;
 } GpgpAtlasReport;

@@ -30,18 +30,18 @@
  * Documentation tags of functions:
  *   @threads any      May be called from any thread at any time.
  *   @threads context  One thread at a time per context. Other threads may record with recorders of the context
- *                     meanwhile. Two calls are excepted: gpgpAdvance, because recordings and report queries read what
- *                     it changes, and destroying an object that a recording uses.
+ *                     meanwhile, but not use an object that is being destroyed. gpgpAdvance excludes recordings and
+ *                     report queries as well.
  *   @threads handle   One thread at a time per handle, the one that the function names first. Calls for different
  *                     handles may run at the same time.
  *   @lifetime call    Pointers are read during the call only.
- *   @lifetime frame   What is named must exist until the frame of the call is safe.
- *   @lifetime handle  What is named must exist until the handle is destroyed.
+ *   @lifetime frame   The named objects must exist until the frame of the call is safe.
+ *   @lifetime handle  The named objects must exist until the handle is destroyed.
  *   @pass             Where the command buffer must be: outside a render pass, inside one, or any (either).
  *   @state            The command-buffer state that differs after the call.
  *
  * Errors are negative values of GpgpResult. A function that returns an error has changed nothing and recorded nothing.
- * It has sent one message, to the callback of its first handle's context or of its info. Without either there is none.
+ * It has sent one message to the callback of its create info or of its first handle's context, if there is a callback.
  *
  * This header includes vulkan_core.h for the handle types. No other Vulkan header has to come first.
  */
@@ -135,8 +135,8 @@ typedef struct GpgpMessage {
   const char* text;     /**< One sentence that names the argument and what was expected. */
 } GpgpMessage;
 
-/** Receives messages on the thread that called gpgp, from several threads at a time where several call it. The callback
- *  must not call gpgp. @lifetime call */
+/** Receives messages on the thread that called gpgp, so several threads may call it at the same time. The callback must
+ *  not call gpgp. @lifetime call */
 typedef void(GPGP_CALL* GpgpMessageFn)(void* userData, const GpgpMessage* message);
 
 /* ---------------------------------------------------------------- structs with a type */
@@ -277,7 +277,7 @@ typedef struct GpgpRequirements {
 } GpgpRequirements;
 #define GPGP_REQUIREMENTS_INIT GPGP_INIT(GpgpRequirements, GPGP_STRUCTURE_REQUIREMENTS)
 
-/** Tells what gpgp needs of a physical device and which optional features it would use. Call it before creating the
+/** Tells what gpgp needs from a physical device and which optional features it would use. Call it before creating the
  *  device; no context is needed. If the device lacks something, the function returns GPGP_ERROR_MISSING_FEATURE and
  *  fills the struct all the same. Returned strings are static. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpGetRequirements(const GpgpRequirementsInfo* info, GpgpRequirements* requirements);
@@ -285,8 +285,8 @@ GPGP_API GpgpResult GPGP_CALL gpgpGetRequirements(const GpgpRequirementsInfo* in
 /* ---------------------------------------------------------------- callbacks of the engine */
 
 /** Allocates host memory. allocate returns NULL on failure. The alignment is a power of two. All host memory of libgpgp
- *  comes from these callbacks; blobs of libgpgp_compiler do not. They are called on threads that call gpgp and on
- *  threads of the job system, several at a time. */
+ *  comes from these callbacks; blobs of libgpgp_compiler do not. Threads that call gpgp and threads of the job system
+ *  call them, possibly at the same time. */
 typedef struct GpgpHostAllocator {
   void* userData;
   void*(GPGP_CALL* allocate)(void* userData, size_t size, size_t alignment);
@@ -312,8 +312,8 @@ typedef struct GpgpGpuAllocationRequest {
 } GpgpGpuAllocationRequest;
 
 /** Allocates device memory. allocate returns VK_SUCCESS or an error. gpgp never calls it while recording. Calls for one
- *  context never overlap, but come from every thread that creates assets. Without these callbacks gpgp sub-allocates
- *  blocks of its own: 4 MiB for the first of a memory type, then 32 MiB, or as much as a larger request needs. */
+ *  context never overlap, but any thread that creates objects may make them. Without these callbacks gpgp sub-allocates
+ *  from its own blocks: 4 MiB for the first of a memory type, then 32 MiB, or as much as a larger request needs. */
 typedef struct GpgpGpuAllocator {
   void* userData;
   VkResult(GPGP_CALL* allocate)(void* userData, const GpgpGpuAllocationRequest* request, GpgpGpuAllocation* allocation);
@@ -323,17 +323,17 @@ typedef struct GpgpGpuAllocator {
 /** One of the jobs that GpgpJobSystem::parallelFor runs. */
 typedef void(GPGP_CALL* GpgpJobFn)(void* argument, uint32_t index);
 
-/** The engine's job system. gpgpPrewarm and the conversion of paths and glyphs use it, on every thread that calls them.
- *  Without it they do all work on the calling thread. */
+/** The engine's job system. gpgpPrewarm and the conversion of paths and glyphs call it, on the thread that called them.
+ *  Without it they do all work on that thread. */
 typedef struct GpgpJobSystem {
   void* userData;
   /** Runs job(argument, i) for every i in [0, count), on any threads, and returns when all jobs have ended. */
   void(GPGP_CALL* parallelFor)(void* userData, uint32_t count, GpgpJobFn job, void* argument);
 } GpgpJobSystem;
 
-/** Reads the engine's files, on every thread that creates assets. read sets size to the size of the file and returns
- * GPGP_SUCCESS. If data is not NULL, it copies at most capacity bytes of the file there. gpgp calls it twice for a
- * file: for the size, then for the data. */
+/** Reads the engine's files. Several threads that create assets may call it at the same time. read sets size to the
+ *  size of the file and returns GPGP_SUCCESS. If data is not NULL, it copies at most capacity bytes of the file there.
+ *  gpgp calls it twice for a file: for the size, then for the data. */
 typedef struct GpgpFileSystem {
   void* userData;
   GpgpResult(GPGP_CALL* read)(void* userData, const char* path, void* data, size_t capacity, size_t* size);
@@ -385,8 +385,9 @@ typedef struct GpgpFrame {
 } GpgpFrame;
 
 /** Begins a frame. For all frames that are now safe, it frees destroyed objects, collects reports, and makes staging
- *  memory and descriptor sets ready for reuse. While the context and its device live, no other function does so. Call
- *  it once a frame, before the recordings of the frame. All recordings of the frame are given this same GpgpFrame.
+ *  memory and descriptor sets ready for reuse. Apart from destroying the context and the loss of the device, nothing
+ *  else does this. Call it once a frame, before the recordings of the frame. All recordings of the frame are given this
+ *  same GpgpFrame.
  *  Errors: INVALID_HANDLE, INVALID_ARGUMENT, DEVICE_LOST.
  *  @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpAdvance(GpgpContext context, const GpgpFrame* frame);
@@ -398,9 +399,9 @@ GPGP_API void GPGP_CALL gpgpNotifyDeviceLost(GpgpContext context);
 
 /** Records copies of pending asset data into device memory, oldest asset first, and clears of new histories. It records
  *  transfer commands and one barrier, or nothing if nothing is pending. The barrier makes the data visible to all later
- *  recordings on the same queue. Between queues the engine synchronises.
+ *  recordings on the same queue. The engine synchronises recordings on other queues.
  *    byteBudget     copies at most this many bytes, but at least 16; 0: as many as staging memory has room for.
- *                      Clears do not count
+ *                   Clears do not count
  *    pendingBytes   receives the number of bytes that are still pending; may be NULL
  *  Errors: INVALID_HANDLE, INVALID_ARGUMENT, TOO_MANY_RECORDINGS, DEVICE_LOST.
  *  @threads context @lifetime call @pass outside @state none */
@@ -464,11 +465,11 @@ typedef struct GpgpTargetInfo {
   const void* pNext;
   VkRenderPass renderPass;       /**< VK_NULL_HANDLE: dynamic rendering, which needs GPGP_FEATURE_DYNAMIC_RENDERING. */
   uint32_t subpass;              /**< Of renderPass. */
-  uint32_t viewMask;             /**< Views 0 and 1 at most. Other than 0, it needs GPGP_FEATURE_MULTIVIEW. */
+  uint32_t viewMask;             /**< 0, or views 0 and 1 at most, which need GPGP_FEATURE_MULTIVIEW. */
   VkFormat colorFormat;          /**< Dynamic rendering: the format of colour attachment 0. */
   VkFormat depthFormat;          /**< Dynamic rendering: the format of the depth attachment, or VK_FORMAT_UNDEFINED. */
   VkSampleCountFlagBits samples; /**< 0: 1 sample. */
-  VkBool32 depthTest;            /**< Tests against the bound depth attachment. gpgp never writes depth. */
+  VkBool32 depthTest;            /**< VK_TRUE: tests the bound depth attachment. gpgp never writes depth. */
   VkCompareOp depthCompare;      /**< Used with depthTest. */
 } GpgpTargetInfo;
 #define GPGP_TARGET_INFO_INIT GPGP_INIT(GpgpTargetInfo, GPGP_STRUCTURE_TARGET_INFO)
@@ -494,7 +495,7 @@ GPGP_API GpgpResult GPGP_CALL gpgpPrewarm(GpgpRecorder recorder, const GpgpPrewa
 GPGP_API GpgpResult GPGP_CALL gpgpGetScratchSize(GpgpRecorder recorder, VkDeviceSize* size, VkDeviceSize* alignment,
                                                  VkBufferUsageFlags* usage);
 
-/** Lists the passes of a recording of this recorder, in order, those that a recording may omit included. count is the
+/** Lists the passes of this recorder's recordings in order, including those that a recording may omit. count is the
  *  capacity of names on input and the number of passes on output. If names is NULL, only the count is returned. If
  *  names is too small, the function fills it and returns GPGP_INCOMPLETE. @threads any @lifetime call; names: handle */
 GPGP_API GpgpResult GPGP_CALL gpgpGetPasses(GpgpRecorder recorder, uint32_t* count, const char** names);
@@ -522,7 +523,7 @@ typedef struct GpgpRecordingInfo {
 /* ---------------------------------------------------------------- reports */
 
 /** The part that all reports have in common, embedded as `base`. A recorder keeps the newest maxFramesInFlight x
- *  maxRecordingsPerFrame reports. Older ones that the engine did not take are dropped with a warning. */
+ *  maxRecordingsPerFrame reports. When there are more, the oldest are dropped with a warning. */
 typedef struct GpgpReportHeader {
   /** SUCCESS, BUDGET_EXCEEDED or NOT_EXECUTED. ERROR_UNSUPPORTED means that a software device ended loops of a shader
    *  early, so that the results are wrong. */
@@ -589,7 +590,7 @@ GPGP_API void GPGP_CALL gpgpFreeBlob(GpgpBlob* blob);
  *                      gpgpRecordPrepareCanvas: the storage image that the canvas writes (GpgpCanvasInfo::target).
  *   canvas history     The prepared picture of a canvas, to be drawn in a render pass.
  *   camera history     The bits of the triangles that were visible in the camera's last recording. Neither kind of
- *                      history has to do with temporal anti-aliasing.
+ *                      history has anything to do with temporal anti-aliasing.
  *   samples            Of attachments and canvases: samples per pixel. Of visibility: samples per pixel and direction.
  *   clip               A region outside of which nothing shows (GpgpPathGroup::clip, gpgpPushClip). Clip space is
  *                      Vulkan's: homogeneous, before the division by w. GpgpCanvasDrawInfo::clip is a matrix to it.

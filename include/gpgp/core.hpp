@@ -143,8 +143,8 @@ public:
   /// gpgpAdvance: once a frame, before anything is recorded in it.
   [[nodiscard]] GpgpResult advance(const GpgpFrame& frame) noexcept { return gpgpAdvance(get(), &frame); }
   void notifyDeviceLost() noexcept { gpgpNotifyDeviceLost(get()); }
-  /// gpgpRecordUpload. The value is the number of bytes that are still pending; byteBudget 0 means all that fits the
-  /// ring.
+  /// gpgpRecordUpload. The value is the number of bytes that are still pending. byteBudget 0: as many as staging memory
+  /// has room for.
   Result<VkDeviceSize> recordUpload(VkCommandBuffer commandBuffer, const GpgpFrame& frame,
                                     VkDeviceSize byteBudget = 0) noexcept {
     VkDeviceSize pending = 0;

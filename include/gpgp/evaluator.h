@@ -1,16 +1,16 @@
-/* gpgp evaluator: derives grammars on the CPU, to the same set as the spawn service does on the GPU. It has a library
- * of its own, libgpgp_evaluator, for collision, navigation, saved games and servers. The library needs neither a device
- * nor a context: use it with libgpgp, or alone. Nothing in it calls Vulkan.
+/* gpgp evaluator: derives grammars on the CPU, with the same result as the spawn service on the GPU. Uses are
+ * collision, navigation, saved games and servers. It has a library of its own, libgpgp_evaluator. The library needs
+ * neither a device nor a context: use it with libgpgp, or alone. Nothing in it calls Vulkan.
  *
  *   evaluator    A grammar, ready to be derived. Read only: any number of threads may use it.
- *   evaluation   What was derived from a list of axioms, and memory that the next derivation uses again.
+ *   evaluation   The result for a list of axioms. The next derivation reuses its memory.
  *
  *   gpgpCreateEvaluator -> gpgpCreateEvaluation -> gpgpEvaluate -> gpgpGetEvaluationResult, again for other axioms
  *
  * Counts, path keys, seeds, sizes, attributes and hashes are those of the GPU, bit for bit. Transforms, positions and
  * normals agree to 1e-4 of their size.
  *
- * There is no context that could recognise a destroyed handle, so using one is undefined.
+ * Destroyed handles are not recognised, since there is no context: using one is undefined behaviour.
  */
 #ifndef GPGP_EVALUATOR_H
 #define GPGP_EVALUATOR_H
@@ -27,8 +27,8 @@ typedef struct GpgpEvaluatorCreateInfo {
   const void* pNext;
   const char* label; /**< For messages. The string is copied. */
   /** The grammar: a text (.pga, or .gml with GPGP_COMPILE_STACK_LANGUAGE) or a baked grammar, whose kernels are
-   * ignored. More than one source: they are linked as gpgpLinkGrammars does. Builders belong to libgpgp_compiler: bake
-   * them. */
+   *  ignored. Several sources are linked, as by gpgpLinkGrammars. Builders are not allowed, since they belong to
+   *  libgpgp_compiler: bake them. */
   const GpgpGrammarSource* sources;
   uint32_t sourceCount;                   /**< At least 1. */
   const GpgpHostAllocator* hostAllocator; /**< NULL: the C++ heap, which the compilation of texts always uses. */
@@ -61,11 +61,11 @@ GPGP_API GpgpResult GPGP_CALL gpgpFindEvaluatorStart(GpgpEvaluator evaluator, co
 /** Creates an empty evaluation. Errors: INVALID_HANDLE, INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. @threads any */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateEvaluation(GpgpEvaluator evaluator, GpgpEvaluation* evaluation);
 
-/** Destroys an evaluation and all that gpgpGetEvaluationResult points at. NULL is ignored. @threads handle */
+/** Destroys an evaluation and everything that gpgpGetEvaluationResult returned. NULL is ignored. @threads handle */
 GPGP_API void GPGP_CALL gpgpDestroyEvaluation(GpgpEvaluation evaluation);
 
-/** Asks whether a derivation should end early. Other than 0: yes. It is called on the threads of the job system,
- * several at a time, at least once every 65536 shapes. */
+/** Returns a number other than 0 to cancel a derivation. Threads of the job system call it, possibly at the same time,
+ *  at least once every 65536 shapes. */
 typedef uint32_t(GPGP_CALL* GpgpIsCancelledFn)(void* userData);
 
 typedef uint64_t GpgpEvaluationFlags;
@@ -74,8 +74,9 @@ typedef uint64_t GpgpEvaluationFlags;
 /** GpgpEvaluatedAxiom::bounds is filled. */
 #define GPGP_EVALUATION_BOUNDS ((GpgpEvaluationFlags)2)
 
-/** Which axioms to derive, and what of them to keep. Colliders meet those of all axioms of one call. Keys and a region
- *  choose what is kept, never what is derived: both given, a terminal must satisfy both. */
+/** The axioms to derive, and which of their terminals to keep. Colliders of all axioms of a call collide with each
+ *  other. keys and region choose what is kept, never what is derived. If both are given, a terminal must satisfy both.
+ */
 typedef struct GpgpEvaluationInfo {
   GpgpStructureType sType;
   const void* pNext;
@@ -85,14 +86,14 @@ typedef struct GpgpEvaluationInfo {
   const uint32_t (*keys)[2]; /**< NULL: all. Only terminals with one of these path keys (GpgpInstance::key) are kept. */
   uint32_t keyCount;         /**< 0 with keys: none is kept. */
   const GpgpSpawnBounds* region; /**< Optional. Only terminals whose world-space box touches this one are kept. */
-  /** Optional. The kept instances come with vertices in this layout, as a spawner would write them. */
+  /** Optional. Also returns the vertices of the kept terminals in this layout, as a spawner would write them. */
   const GpgpVertexLayout* vertices;
   uint32_t maxDepth; /**< As GpgpSpawnerCreateInfo::maxDepth. 0: 64. */
-  /** Shapes that an axiom may become, terminals included. The derivation of an axiom stops there, at the same shape
-   *  every time. 0: 2^27, at most 2^31. */
+  /** Maximum number of shapes of an axiom, terminals included; at most 2^31. 0: 2^27. The derivation of an axiom stops
+   *  there, always at the same shape. */
   uint32_t maxShapesPerAxiom;
-  /** The axioms are cut into so many ranges, and each is a job of GpgpJobSystem. The result does not depend on it.
-   *  0: 64 with a job system, else 1. */
+  /** Number of ranges that the axioms are divided into. Each range is one job of GpgpJobSystem. The result does not
+   *  depend on this number. 0: 64 with a job system, 1 without. */
   uint32_t rangeCount;
   GpgpIsCancelledFn isCancelled; /**< Optional. */
   void* cancelUserData;
@@ -107,19 +108,20 @@ typedef struct GpgpEvaluationInfo {
  *  Errors: INVALID_HANDLE, INVALID_STRUCT, INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpEvaluate(GpgpEvaluation evaluation, const GpgpEvaluationInfo* info);
 
-/** What came of one axiom. The order of its terminals is that of a walk depth first, phase after phase. */
+/** The result of one axiom. Its terminals are in depth-first order, one phase after the other. */
 typedef struct GpgpEvaluatedAxiom {
   GpgpResult status; /**< SUCCESS, or BUDGET_EXCEEDED: the axiom was not derived to its end, or shapes were dropped. */
   uint32_t instanceCount;        /**< Terminals that were kept. */
   const GpgpInstance* instances; /**< [instanceCount] */
   const void* vertices;          /**< 4 for every quad. NULL without GpgpEvaluationInfo::vertices. */
   uint32_t vertexCount;
-  uint32_t indexCount; /**< vertexCount / 4 * 6, the first of GpgpEvaluationResult::indices, from 0 for this axiom. */
-  GpgpSpawnBounds bounds;                          /**< Around the kept terminals. Only with GPGP_EVALUATION_BOUNDS. */
-  uint32_t terminals;                              /**< All, kept or not. */
-  uint32_t shapes;                                 /**< That were taken up, terminals included. */
+  uint32_t indexCount;    /**< vertexCount / 4 * 6: the axiom uses the first ones of GpgpEvaluationResult::indices. */
+  GpgpSpawnBounds bounds; /**< Around the kept terminals. Only with GPGP_EVALUATION_BOUNDS. */
+  uint32_t terminals;     /**< All terminals, kept or not. */
+  uint32_t shapes;        /**< Shapes that were processed, terminals included. */
   uint32_t droppedShapes, unfinishedShapes, depth; /**< As in GpgpSpawnReport. */
-  uint32_t keyHash[2]; /**< As in GpgpSpawnReport, of this axiom. Those of axioms add up, modulo 2^32. */
+  /** As in GpgpSpawnReport, for this axiom. The sum over all axioms, modulo 2^32, is that of the result. */
+  uint32_t keyHash[2];
 } GpgpEvaluatedAxiom;
 
 /** All pointers stay valid until the next gpgpEvaluate of the evaluation, or until it is destroyed. */
@@ -132,14 +134,14 @@ typedef struct GpgpEvaluationResult {
   const uint32_t* indices;          /**< One pattern for all axioms: 0 1 2 0 2 3, 4 5 6 4 6 7 and so on. */
   uint32_t indexCount;              /**< Enough for the axiom with the most vertices. */
   uint64_t instances;               /**< Terminals that were kept. */
-  uint64_t terminals;               /**< All, kept or not. */
-  uint64_t shapes;                  /**< That were taken up, terminals included. */
+  uint64_t terminals;               /**< All terminals, kept or not. */
+  uint64_t shapes;                  /**< Shapes that were processed, terminals included. */
   uint64_t colliders;               /**< Shapes that Collider registered. */
   uint32_t droppedShapes, unfinishedShapes, depth; /**< As in GpgpSpawnReport. */
   uint32_t keyHash[2];                             /**< As in GpgpSpawnReport: equal to that of the GPU. */
-  uint32_t rangeCount;                             /**< Ranges that were used. */
-  const GpgpAxiomMeasures*
-      measures; /**< [axiomCount], as a spawner measures. NULL without GpgpEvaluationInfo::measures. */
+  uint32_t rangeCount;                             /**< Number of ranges that were used. */
+  /** [axiomCount], as a spawner measures. NULL without GpgpEvaluationInfo::measures. */
+  const GpgpAxiomMeasures* measures;
 } GpgpEvaluationResult;
 #define GPGP_EVALUATION_RESULT_INIT GPGP_INIT(GpgpEvaluationResult, GPGP_STRUCTURE_EVALUATION_RESULT)
 

@@ -1,18 +1,19 @@
-/* gpgp/layers.h: groups of paths that are composited by themselves: blend modes, masks, filters.
+/* gpgp/layers.h: groups of paths with blend modes, masks and filters.
  *
- * A layer is a GpgpPathGroup (vector.h) with GpgpPathGroup::layer. Its paths and the groups inside it make a picture of
- * their own, which is filtered, clipped, masked, made less than opaque and mixed with what lies behind, in this order.
+ * A layer is a GpgpPathGroup (vector.h) with GpgpPathGroup::layer. Its paths and the groups inside it are rendered into
+ * a picture of their own. This picture is filtered, clipped, masked, multiplied by the group's opacity and blended with
+ * what lies behind, in this order.
  *
- * Canvases draw layers where they were made with room for them (GpgpCanvasCreateInfo::maxLayerPixels). Glyphs, edits of
- * drawings, hit tests and draws inside a render pass do not take drawings with layers.
+ * A canvas draws layers if it was created with room for them (GpgpCanvasCreateInfo::maxLayerPixels). Drawings with
+ * layers cannot be used for glyphs, edits, hit tests and draws inside a render pass.
  */
 #ifndef GPGP_LAYERS_H
 #define GPGP_LAYERS_H
 #include <gpgp/core.h>
 
-/** How a layer's picture is mixed with what lies behind it (W3C Compositing and Blending 1). Colours are mixed in the
+/** How a layer's picture is blended with what lies behind it (W3C Compositing and Blending 1). Colours are mixed in the
  *  canvas's encoding (GpgpCanvasInfo::blendSrgb). All modes but NORMAL, MULTIPLY, DARKEN, LIGHTEN, DIFFERENCE and
- *  PLUS_LIGHTER take colours brighter than white as white. */
+ *  PLUS_LIGHTER clamp colours brighter than white to white. */
 typedef int32_t GpgpBlendMode;
 enum {
   GPGP_BLEND_NORMAL = 0,
@@ -34,7 +35,7 @@ enum {
   GPGP_BLEND_PLUS_LIGHTER = 16
 };
 
-/** What of a mask's picture a layer is multiplied by. */
+/** Which value of the mask's picture a layer is multiplied by. */
 typedef int32_t GpgpMaskKind;
 enum {
   GPGP_MASK_LUMINANCE = 0, /**< luminance times alpha */
@@ -56,8 +57,8 @@ enum {
   GPGP_FILTER_MORPHOLOGY = 8,         /**< values: radius along x, y, rounded to pixels; mode: 0 erode, 1 dilate */
   /** values: order x, y (1 to 32 each), target x, y, divisor (not 0), bias, preserve alpha (0 or 1), distance of the
    *  kernel's elements along x, y in units of filter space (0: 1; below 0: mirrored); table: the kernel, order x times
-   * order y numbers as SVG lists them; mode: GpgpFilterEdge. The bias is added to alpha, and times alpha to colours,
-   * also where the input is transparent. */
+   *  order y numbers as SVG lists them; mode: GpgpFilterEdge. The bias is added to alpha, and times alpha to colours,
+   *  also where the input is transparent. */
   GPGP_FILTER_CONVOLVE_MATRIX = 9,
   GPGP_FILTER_DISPLACEMENT_MAP =
       10, /**< values: scale; mode: x channel + 4 y channel (0 R, 1 G, 2 B, 3 A) of `input2` */
@@ -69,16 +70,18 @@ enum {
   GPGP_FILTER_SPECULAR_LIGHTING = 13, /**< values: surface scale, specular constant, linear RGB, exponent, then the
                                            light; mode likewise */
   GPGP_FILTER_TILE = 14,              /**< repeats what `input` has inside its own region over this region */
-  GPGP_FILTER_GROUP = 15 /**< a group's picture, painted here alone; values: its drawing space to filter space, six */
+  /** the picture of a group that is painted only here; values: six, the group's drawing space to filter space */
+  GPGP_FILTER_GROUP = 15
 };
 
-/** The light: distant: azimuth, elevation (radians); point: x, y, z; spot: x, y, z, points at x, y, z, exponent, cosine
- *  of the cone's half angle (-1: no cone). Values 14 and 15: how far apart along x and y the heights of the surface are
- *  compared, in units of filter space (0: 1); the surface scale is in units of that. */
+/** The kind of light. Its values: distant: azimuth, elevation (radians); point: x, y, z; spot: x, y, z, the point x, y,
+ *  z that it is aimed at, exponent, cosine of the cone's half angle (-1: no cone). Values 14 and 15 are the distances
+ *  along x and y over which the surface's slope is measured, in filter space (0: 1). The surface scale is in units of
+ *  these distances. */
 typedef int32_t GpgpFilterLight;
 enum { GPGP_LIGHT_DISTANT = 0, GPGP_LIGHT_POINT = 1, GPGP_LIGHT_SPOT = 2 };
 
-/** What lies outside of the input's region. */
+/** What a convolution reads outside the input's region. */
 typedef int32_t GpgpFilterEdge;
 enum { GPGP_EDGE_NONE = 0, GPGP_EDGE_DUPLICATE = 1, GPGP_EDGE_WRAP = 2 };
 
@@ -115,17 +118,16 @@ typedef struct GpgpFilterStep {
   float values[20];
   const float* table; /**< by kind; NULL otherwise */
   uint32_t tableCount;
-  uint32_t
-      group; /**< GPGP_FILTER_GROUP: 1 + the index of a later group without a parent, whose paths show here alone */
+  uint32_t group; /**< GPGP_FILTER_GROUP: 1 + the index of a later group without a parent, painted only here */
 } GpgpFilterStep;
 
 /** What makes a group a layer. Order: filter, then clip, then mask, then opacity, then blend. Every layer is isolated:
- *  layers inside it blend with what lies inside it alone. So is a drawing as a whole. */
+ *  layers inside it blend only with what lies inside it. A drawing as a whole is isolated, too. */
 typedef struct GpgpLayer {
   GpgpBlendMode blend;
   int32_t isolated; /**< 1: the group is a layer even where nothing else makes it one */
-  uint32_t mask;    /**< 0: none; otherwise 1 + the index of a later group without a parent, whose paths show only as
-                         masks */
+  /** 0: none; otherwise 1 + the index of a later group without a parent, whose paths are painted only as masks */
+  uint32_t mask;
   GpgpMaskKind maskKind;
   int32_t maskEncoding;   /**< GPGP_IMAGE_LINEAR or _SRGB: what luminance is computed from; SVG's default is sRGB */
   float maskRegion[4];    /**< left, top, right, bottom in the space of `maskTransform`; nothing shows outside */

@@ -1,10 +1,11 @@
-/* gpgp lottie: Lottie animations (.json, .lottie), frame by frame as paths, groups and layers. In libgpgp_compiler.
+/* gpgp lottie: reads Lottie animations (.json, .lottie) and returns each frame as paths, groups and layers. In
+ * libgpgp_compiler.
  *
  *   gpgpCreateLottie(&source, &lottie)               reads and checks the file once
  *   gpgpEvaluateLottie(lottie, frame, &picture)      what a frame shows, as gpgpCreateDrawing takes it
  *   gpgpCreateDrawing(context, ...paths, groups...)  converts it, for canvases with room for layers (layers.h)
  *
- * Frames are numbers of the file, and need not be whole. Nothing here needs a context or a device.
+ * Frame numbers are those of the file and may be fractions. Nothing here needs a context or a device.
  */
 #ifndef GPGP_LOTTIE_H
 #define GPGP_LOTTIE_H
@@ -22,16 +23,16 @@ typedef struct GpgpLottieSource {
   const char* name; /**< file name, for messages */
   const void* data; /**< JSON, or a .lottie archive, whose first animation is taken; at most 64 MiB of JSON */
   size_t size;
-  /** Receives errors. Receives as warnings what is unsupported, once a kind, with the first place that asks for it. The
-   *  message's label is "file:line:column" where the file is no JSON, otherwise "file: place", for example
+  /** Receives errors. Also receives one warning for each kind of unsupported feature, with the first place that uses
+   *  it. The message's label is "file:line:column" if the file is not JSON, otherwise "file: place", for example
    *  "spinner.json: layers[2].shapes[0].it[1]". Also called by gpgpEvaluateLottie and gpgpCompileLottieFrame. */
   GpgpMessageFn messageFn;
   void* messageUserData;
   /** Optional: accepts images, as for an SVG, at most GPGP_MAX_IMAGES. NULL: images are reported as unsupported. */
   GpgpSvgImageFn imageFn;
   void* imageUserData;
-  /** Optional: reads images that lie beside the animation, by paths relative to its folder that never lead out of it.
-   *  At most 64 MiB of images are read. */
+  /** Optional: reads images by paths relative to the animation's folder. Paths that lead out of this folder are not
+   *  read. At most 64 MiB of images are read. */
   const GpgpFileSystem* fileSystem;
   /** Optional: shapes text of fonts whose glyphs the file does not hold. Called by gpgpEvaluateLottie and
    *  gpgpCompileLottieFrame. NULL: such text is reported as unsupported. */
@@ -48,7 +49,8 @@ typedef struct GpgpLottieSource {
  *  OUT_OF_HOST_MEMORY. @threads any @lifetime call; messageFn, textFn and their userData: handle */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateLottie(const GpgpLottieSource* source, GpgpLottie* lottie);
 
-/** Destroys an animation, and what its last frame points to. In libgpgp_compiler. NULL is ignored. @threads handle */
+/** Destroys an animation and everything that its last frame points to. In libgpgp_compiler. NULL is ignored. @threads
+ *  handle */
 GPGP_API void GPGP_CALL gpgpDestroyLottie(GpgpLottie lottie);
 
 typedef struct GpgpLottieInfo {
@@ -56,7 +58,7 @@ typedef struct GpgpLottieInfo {
   void* pNext;
   float width, height;         /**< of the composition; drawings of its frames have it at (0, 0) */
   double frameRate;            /**< frames per second */
-  double firstFrame, endFrame; /**< The animation shows frames from the first to before the end. */
+  double firstFrame, endFrame; /**< The animation shows frames from firstFrame on, and ends before endFrame. */
   uint32_t layers;             /**< of all compositions */
   uint32_t images;             /**< that imageFn accepted */
 } GpgpLottieInfo;
@@ -72,15 +74,16 @@ typedef struct GpgpLottieFrame {
   uint32_t pathCount;
   const GpgpPathGroup* groups;
   uint32_t groupCount;
-  /** Frames with the same paths and groups have the same number, so that an engine can keep drawings by it. Different
-   *  frames have different numbers but for one in 2^64. */
+  /** Frames with the same paths and groups have the same number, so engines can cache drawings by this number. The
+   *  numbers of different frames are equal with a probability of 2^-64. */
   uint64_t content;
 } GpgpLottieFrame;
 #define GPGP_LOTTIE_FRAME_INIT GPGP_INIT(GpgpLottieFrame, GPGP_STRUCTURE_LOTTIE_FRAME)
 
-/** Evaluates a frame. In libgpgp_compiler. Frames outside of the animation show its first or its last moment. What the
- * frame points to stays valid until the next call for this handle. What would exceed a limit is left out, and a message
- * says so. Errors: INVALID_HANDLE, INVALID_ARGUMENT (the frame is not finite), INVALID_STRUCT, OUT_OF_HOST_MEMORY.
+/** Evaluates a frame. In libgpgp_compiler. A frame outside the animation shows its first or last moment. Pointers in
+ *  the result stay valid until the next call for this handle. Content that would exceed a limit is left out, and a
+ *  message says so. Errors: INVALID_HANDLE, INVALID_ARGUMENT (the frame is not finite), INVALID_STRUCT,
+ *  OUT_OF_HOST_MEMORY.
  *  @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpEvaluateLottie(GpgpLottie lottie, double frame, GpgpLottieFrame* result);
 

@@ -99,8 +99,8 @@ typedef struct GpgpLsystemRecorderCreateInfo {
   uint32_t maxParameters; /**< Parameters of all modules of a string. At most 2^26. 0: as maxModules. 8 bytes each. */
   /** Steps of a recording: iterations, and the steps of decomposition and homomorphism. At most 1024. 0: 64. */
   uint32_t maxSteps;
-  /** Rounds for turtles whose commands depend on the heading ($, T and tropism). A round takes 256 modules of a branch,
-   *  and goes on in the branches that begin there. At most 1024. 0: 64. */
+  /** Rounds for turtles whose commands depend on the heading ($, T and tropism). A round processes 256 modules of a
+   *  branch and starts the branches that begin there. At most 1024. 0: 64. */
   uint32_t maxRounds;
   /** Axioms of one recording that come from GpgpLsystemInfo::hostAxioms. 0: none. At most 2^20. */
   uint32_t maxHostAxioms;
@@ -145,15 +145,14 @@ typedef struct GpgpLsystemInfo {
   uint32_t axiomCount;
   /** At most 1000. 0: as many as the L-system says. GPGP_LSYSTEM_NO_ITERATIONS: the axiom is drawn. */
   uint32_t iterations;
-  /** Output, optional. GpgpInstance[]. Its size is the budget. STORAGE usage. Instances lie by terminal, and those of a
-   *  terminal in the order of the string.
+  /** Output, optional. GpgpInstance[]. Its size is the budget. STORAGE usage. Instances are sorted by terminal, and
+   *  within a terminal by their order in the string.
    *
-   *  The transform maps the unit shape, which stands on the turtle's place: its +Y is the heading, its +Z the turtle's
-   *  up. size holds width, length and width, attribute the turtle's colour, key that of the module. rule is
-   *  GPGP_NO_RULE.
+   *  The unit shape stands on the turtle's position; its +Y is the heading, its +Z the turtle's up. size holds width,
+   *  length and width, attribute the turtle's colour, key the key of the module. rule is GPGP_NO_RULE.
    *
    *  A polygon has the shape GPGP_SHAPE_DYNAMIC_POLYGON and a generalised cylinder GPGP_SHAPE_DYNAMIC_RIGHT_PRISM.
-   * Their rule is the index of their first corner and size[0] the number of corners. */
+   *  Their rule is the index of their first corner and size[0] the number of corners. */
   GpgpBuffer instances;
   /** Output, optional. VkDrawIndexedIndirectCommand[terminals]. STORAGE usage. instanceCount and firstInstance are
    *  written. Other fields keep the engine's values. */
@@ -179,18 +178,18 @@ typedef struct GpgpLsystemReport {
   GpgpReportHeader base;
   uint32_t modules;    /**< Of the last string, with the brackets and the @axiom of each axiom. */
   uint32_t parameters; /**< Of the last string. */
-  /** Steps that were taken. Less than all only with BUDGET_EXCEEDED: the string of the next step did not fit, and the
-   *  last that did was drawn. */
+  /** Steps that were taken. If there are fewer than asked for, the status is BUDGET_EXCEEDED: the string of the next
+   *  step did not fit, and the last string that did was drawn. */
   uint32_t steps;
-  /** The most modules of any step, the one that did not fit included. That step would have fitted this maxModules.
-   * Later steps may need more. */
+  /** The largest number of modules of any step, including the one that did not fit. With this maxModules it would have
+   *  fitted; later steps may need more. */
   uint32_t modulesNeeded;
-  uint32_t parametersNeeded; /**< The same of maxParameters. */
-  uint32_t instances;        /**< That the last string draws. */
+  uint32_t parametersNeeded; /**< Likewise for maxParameters. */
+  uint32_t instances;        /**< Instances that the last string draws. */
   uint32_t instancesWritten; /**< At most instances. Less only with BUDGET_EXCEEDED. */
   uint32_t corners;          /**< Of all polygons and cylinders. */
   uint32_t cornersWritten;   /**< At most corners. Less only with BUDGET_EXCEEDED. */
-  uint32_t depth;            /**< Brackets around the deepest module. At most 65535 are drawn right. */
+  uint32_t depth;            /**< Brackets around the deepest module. Only depths up to 65535 are drawn correctly. */
   /** Branches that were not drawn to their end within maxRounds, with BUDGET_EXCEEDED. */
   uint32_t unfinishedBranches;
   uint32_t stringHash[2]; /**< Hash of the last string. Equal on all devices. */

@@ -47,7 +47,7 @@ typedef struct GpgpAxiom {
 typedef struct GpgpInstance {
   float transform[12]; /**< Rows of a 3x4 matrix from the unit shape to world space. */
   uint32_t bucket;     /**< GpgpGrammarTerminal::bucket of the terminal. It selects the draw. */
-  uint32_t shape;      /**< A GpgpShape. GPGP_SHAPE_ROOF and TRAPEZOID have their form in the bits from 8 on. */
+  uint32_t shape;      /**< A GpgpShape; for GPGP_SHAPE_ROOF and GPGP_SHAPE_TRAPEZOID also its form, in bits 8 to 30. */
   uint32_t axiomId;    /**< GpgpAxiom::id. */
   uint32_t terminal;   /**< Index into gpgpGetGrammarTerminals. Several terminals may share a bucket. */
   uint32_t seed;       /**< Seed of the shape. */
@@ -61,22 +61,21 @@ typedef struct GpgpInstance {
 #define GPGP_NO_RULE 0xffffffffu
 
 /** A terminal shape in 32 bytes, which spawners with GPGP_SPAWNER_COMPACT write. gpgp/shaders/compact_instance.h reads
- * it in GLSL and HLSL. The point p of the unit shape lies at position + rotate(rotation, scale * p).
+ *  it in GLSL and HLSL. The point p of the unit shape lies at position + rotate(rotation, scale * p).
  *
- *  No point of the unit shape is farther from where GpgpInstance::transform puts it than 6e-4 times the largest of the
- *  three extents in the world, plus the rounding of position. Extents are 6.2e-5 to 65504 metres; smaller ones become
- * 0, larger ones 65504. Shear is lost: the axiom's transform must rotate, mirror, move, and scale alike in all
- *  directions. */
+ *  The error, compared with GpgpInstance::transform, is at most 6e-4 times the largest of the three extents in the
+ *  world, plus the rounding of position. Extents are 6.2e-5 to 65504 metres; smaller ones become 0, larger ones 65504.
+ *  Shear cannot be represented: the axiom's transform may only rotate, mirror, translate and scale uniformly. */
 typedef struct GpgpCompactInstance {
   float position[3]; /**< World space. */
   uint32_t seed;     /**< GpgpInstance::seed. */
-  /** Half floats: the extents in the world. Polygons have the axiom's scale in the third, as GpgpInstance::transform
-   *  has. Where the axiom mirrors, the first one is negative. */
+  /** Extents in the world as half floats. For polygons the third is the axiom's scale, as in GpgpInstance::transform.
+   *  If the axiom's transform mirrors, the first is negative. */
   uint16_t scale[3];
   uint16_t terminal; /**< GpgpInstance::terminal, from which the mesh and the material follow. */
-  /** A unit quaternion x, y, z, w without its largest component, which is positive: the other three in their order, as
-   *  15 bits each, of which 0 to 32767 stand for -sqrt(1/2) to sqrt(1/2). The highest bits of the first two say which
-   *  is missing: bit 0 in the first, bit 1 in the second. */
+  /** A unit quaternion (x, y, z, w) whose largest component is positive and left out. The other three follow in order,
+   *  15 bits each: 0 to 32767 stand for -sqrt(1/2) to sqrt(1/2). The highest bits of the first two numbers are the
+   *  index of the missing component: bit 0 in the first, bit 1 in the second. */
   uint16_t rotation[3];
   uint16_t shape; /**< A GpgpShape, without the form of roofs and trapezoids. */
 } GpgpCompactInstance;
@@ -84,10 +83,11 @@ typedef struct GpgpCompactInstance {
 /** Types of shapes. PRISM3 to PRISM8 and BOX are right prisms on regular polygons and on a square.
  *
  *  A ROOF stands on the whole lower face of its unit box and ends in a ridge at y = 0.5. A TRAPEZOID lies in z = 0 on
- *  the whole lower edge of its unit square and ends in a part of the upper one. GpgpInstance::shape says more of them:
- *  bits 0 to 7 are the GpgpShape. Bits 8 to 27 are half the length of the ridge or of the upper edge, in units of
- *  2^-20 of the extent along it. Bits 28 and 29 say where it is: 0 in the middle, 1 at -0.5, 2 at 0.5, of a ridge
- * across it, of an edge along it. With bit 30 the ridge is parallel to z, else to x. */
+ *  the whole lower edge of its unit square and ends in a part of the upper one. GpgpInstance::shape holds their form as
+ *  well. Bits 0 to 7 are the GpgpShape. Bits 8 to 27 are half the length of the ridge or upper edge, in units of 2^-20
+ *  of the extent along it. Bits 28 and 29 are its position: 0 in the middle, 1 at -0.5, 2 at 0.5. A ridge is moved at
+ *  right angles to itself, an edge along itself. Bit 30 is set if the ridge is parallel to z, and not set if it is
+ *  parallel to x. */
 typedef uint32_t GpgpShape;
 enum {
   GPGP_SHAPE_TRIANGLE = 0,
@@ -134,8 +134,8 @@ typedef struct GpgpVariable {
 } GpgpVariable;
 
 typedef uint64_t GpgpCompileFlags;
-/** Generates a kernel for the grammar, in the default schedule. The kernel derives the same as the interpreter, in less
- *  time. gpgpPrewarmGrammar compiles it for the device. */
+/** Generates a kernel for the grammar, in the default schedule. The kernel gives the same result as the interpreter in
+ *  less time. gpgpPrewarmGrammar compiles it for the device. */
 #define GPGP_COMPILE_KERNEL ((GpgpCompileFlags)1)
 /** GpgpGrammarSource::text is a program in the stack language (.gml) instead of PGA-shape. */
 #define GPGP_COMPILE_STACK_LANGUAGE ((GpgpCompileFlags)2)
@@ -165,17 +165,18 @@ typedef struct GpgpGrammarSource {
 
 /** Compiles a text, a builder or a baked grammar to a baked grammar. The text is PGA-shape (.pga), or an operator graph
  *  as `gpgp graph` prints it, which has no variables, or with GPGP_COMPILE_STACK_LANGUAGE a stack program (.gml). The
- * result depends on the input only. In libgpgp_compiler. Errors: INVALID_DATA (messages say where), INVALID_ARGUMENT,
- * INVALID_STRUCT, UNSUPPORTED (a limit of graphs is exceeded), OUT_OF_HOST_MEMORY. @threads any @lifetime call */
+ *  result depends on the input only. In libgpgp_compiler. Errors: INVALID_DATA (messages say where), INVALID_ARGUMENT,
+ *  INVALID_STRUCT, UNSUPPORTED (a limit of graphs is exceeded), OUT_OF_HOST_MEMORY. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCompileGrammar(const GpgpGrammarSource* source, GpgpBlob* blob);
 
 /** Compiles several grammars to one, so that one recording derives axioms of all of them. The rules, terminals, buckets
  *  and axiom lines follow in the order of the sources. The first axiom line of the first source is the default start.
  *
  *  Each source has a name: its alias, or else GpgpGrammarSource::name without folders and without everything from the
- *  first point on. Other characters than letters, digits and _ become _, and _ is put before a name of digits alone.
- *  The name precedes those of rules and terminals, as in house.Wall. The first axiom line of the source becomes the
- *  start named house (gpgpGetGrammarStarts). Only the tags of Collider and IfCollides are shared between sources.
+ *  first dot on. Characters other than letters, digits and _ become _. A name that consists of digits only is prefixed
+ *  with _. The names of rules and terminals are prefixed with the name of their source, as in house.Wall. The first
+ *  axiom line of the source becomes the start named house (gpgpGetGrammarStarts). Sources share nothing but the tags of
+ *  Collider and IfCollides.
  *
  *  Each source has variables and messages of its own. A kernel is generated if any source asks for one. The result
  *  depends on the input only. In libgpgp_compiler.
@@ -196,8 +197,8 @@ typedef struct GpgpGrammarCreateInfo {
 } GpgpGrammarCreateInfo;
 #define GPGP_GRAMMAR_CREATE_INFO_INIT GPGP_INIT(GpgpGrammarCreateInfo, GPGP_STRUCTURE_GRAMMAR_CREATE_INFO)
 
-/** Checks a baked grammar and queues it for upload. Checked are magic, version, checksums, every index and the
- *  kernels, and that the data ends there.
+/** Checks a baked grammar and queues it for upload. It checks the magic number, the version, the checksums, every index
+ *  and the kernels, and that no data follows.
  *  Errors: INVALID_DATA, INVALID_ARGUMENT, INVALID_STRUCT, INVALID_HANDLE, IO, OUT_OF_..._MEMORY, DEVICE_LOST.
  *  @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateGrammar(GpgpContext context, const GpgpGrammarCreateInfo* info,
@@ -241,9 +242,9 @@ GPGP_API GpgpResult GPGP_CALL gpgpFindGrammarStart(GpgpAsset grammar, const char
 /** What a vertex attribute holds. */
 typedef uint32_t GpgpVertexSemantic;
 enum {
-  GPGP_VERTEX_POSITION = 0, /**< In world space. A fourth component is 1. */
+  GPGP_VERTEX_POSITION = 0, /**< World space. A fourth component is 1. */
   GPGP_VERTEX_NORMAL = 1,   /**< Normal of the face, unit length, in world space. UNORM formats hold n / 2 + 1 / 2. */
-  GPGP_VERTEX_UV = 2,       /**< Place on the face in [0, 1], to the right and upwards. */
+  GPGP_VERTEX_UV = 2,       /**< Position on the face, 0 to 1 from left to right and from bottom to top. */
   GPGP_VERTEX_BUCKET = 3,   /**< GpgpGrammarTerminal::bucket. */
   GPGP_VERTEX_AXIOM_ID = 4, /**< GpgpAxiom::id. */
   GPGP_VERTEX_TERMINAL = 5, /**< Index into gpgpGetGrammarTerminals. */
@@ -277,8 +278,8 @@ typedef uint64_t GpgpSpawnerFlags;
  *  long as maxTerminals holds all terminals and no shape is dropped. Axioms should differ in seed or id. Terminals with
  *  equal keys follow in the order of their axioms, but the order of thousands of equal keys is unspecified. */
 #define GPGP_SPAWNER_ORDERED ((GpgpSpawnerFlags)1)
-/** The spawner writes GpgpCompactInstance instead of GpgpInstance. Its recordings are always sorted by bucket, so that
- *  maxTerminals bounds them. Without GPGP_SPAWNER_ORDERED there are no regions. Not with vertices. */
+/** The spawner writes GpgpCompactInstance instead of GpgpInstance. Its output is always sorted by bucket, so
+ *  maxTerminals limits it. GPGP_SPAWN_REGIONS also needs GPGP_SPAWNER_ORDERED then. Not allowed with vertices. */
 #define GPGP_SPAWNER_COMPACT ((GpgpSpawnerFlags)2)
 
 /** Budgets of a spawner. What does not fit a budget is counted in the report. */
@@ -292,14 +293,15 @@ typedef struct GpgpSpawnerCreateInfo {
   const GpgpVertexLayout* vertices;
   uint32_t maxShapes; /**< Shapes that wait for a round of derivation. At most 2^24. 0: 131072. 576 bytes each. */
   /** Terminal shapes of one recording that are written as vertices, sorted by bucket or ordered. A spawner whose
-   *  recordings only count, or write other instances, needs 1. At most 2^24. 0: 524288. 96 bytes each, ordered 112. */
+   *  recordings only count, or write unsorted instances, needs 1. At most 2^24. 0: 524288. 96 bytes each, ordered 112.
+   */
   uint32_t maxTerminals;
-  /** How deep rules may nest in themselves. Deeper shapes are counted and not derived. At most 65535. 0: 64. */
+  /** Maximum recursion depth of rules. Deeper shapes are counted and not derived. At most 65535. 0: 64. */
   uint32_t maxDepth;
-  /** Rounds of derivation that are recorded, one pass each. Workgroups derive on their own and rounds only share the
-   *  work out again, so few are needed. What is left after the last round is counted as dropped. At most 256. 0: at
-   *  most 4, or 32 on software devices, and fewer if the number of axioms or a tuned kernel shows that fewer
-   *  suffice. */
+  /** Rounds of derivation that are recorded, one pass each. Within a round each workgroup derives on its own; a new
+   *  round only redistributes the work, so few are needed. Shapes that remain after the last round are counted as
+   *  dropped. At most 256. 0: at most 4, or 32 on software devices, and fewer if the number of axioms or a tuned kernel
+   *  shows that fewer suffice. */
   uint32_t maxRounds;
   /** Shapes that Collider registers in one recording. 0: none, and grammars with Collider or IfCollides are refused. At
    *  most 2^24, on software devices 8192. 76 to 84 bytes each. If not 0, each of maxShapes takes 96 bytes more. */
@@ -338,7 +340,7 @@ typedef struct GpgpVertexOutput {
   /** Output. Its size is the budget. STORAGE usage. NULL: no indices are written. They are the same pattern in every
    *  recording. */
   GpgpBuffer indices;
-  VkIndexType indexType; /**< UINT16 or UINT32. 16 bits reach 65532 vertices of a draw. */
+  VkIndexType indexType; /**< UINT16 or UINT32. UINT16 allows up to 65532 vertices in a draw. */
 } GpgpVertexOutput;
 
 /** An axis-aligned box in world space. 24 bytes. */
@@ -346,18 +348,18 @@ typedef struct GpgpSpawnBounds {
   float min[3], max[3]; /**< In metres. An empty box has min +infinity and max -infinity. */
 } GpgpSpawnBounds;
 
-/** A camera, for grammars that derive less of what is far away or out of sight. Their values CameraDistance(),
- *  ScreenSize() and OutOfView() ask it. It does not matter to other grammars. Without a camera everything counts as
- * near and in sight, so that all is derived at the finest level.
+/** A camera, for grammars that derive distant or hidden parts in less detail: the values CameraDistance(), ScreenSize()
+ *  and OutOfView() refer to it. Other grammars ignore it. Without a camera everything counts as near and in view, so
+ *  all levels of detail are the finest ones.
  *
  *  A shape's sphere is centred on the shape. Its diameter is the diagonal of the shape's extents, times the largest
  *  scale of its axiom's transform. The same camera gives the same terminals on every device and on the CPU. */
 typedef struct GpgpSpawnCamera {
   /** World space to Vulkan's clip space, column-major; perspective or parallel. Its six planes are the frustum of
-   *  OutOfView(); a far plane at infinity is none. Reversed depth does not matter. */
+   *  OutOfView(); a far plane at infinity is ignored. Reversed depth does not matter. */
   float viewProjection[16];
-  float position[3]; /**< World space, metres. Distances are measured from here, also by parallel projections. */
-  uint32_t height;   /**< Of the picture in pixels, for ScreenSize(). Not 0. */
+  float position[3]; /**< World space, metres. Distances are measured from here, with parallel projections too. */
+  uint32_t height;   /**< Height of the picture in pixels, for ScreenSize(). Not 0. */
 } GpgpSpawnCamera;
 
 /** The range of an axiom in GpgpSpawnInfo::instances. 16 bytes (std430). */
@@ -365,7 +367,7 @@ typedef struct GpgpAxiomRange {
   uint32_t first;    /**< Instance, from the beginning of the buffer's range. */
   uint32_t capacity; /**< Instances. 0: the axiom's terminals are only counted. */
   /** 0 before the recording; afterwards the axiom's terminals, those that did not fit included. The first min(count,
-   *  capacity) places of the range are written, in no particular order. Others keep what they held. */
+   *  capacity) instances of the range are written, in no particular order. The others keep their contents. */
   uint32_t count;
   uint32_t reserved; /**< 0. */
 } GpgpAxiomRange;
@@ -442,7 +444,7 @@ typedef struct GpgpSpawnInfo {
    *  `instances` in what the engine binds. Without GPGP_SPAWN_REGIONS, and not for vertices. */
   uint32_t firstInstance;
   /** Output, GpgpInstance[], or GpgpCompactInstance[] with GPGP_SPAWNER_COMPACT. Its size is the budget. STORAGE usage.
-   * NULL: the recording only counts, and needs draws or measures. */
+   *  NULL: the recording only counts, and draws or measures must be given. */
   GpgpBuffer instances;
   const GpgpVertexOutput* vertices; /**< Output of spawners that were created for vertices, instead of instances. */
   /** Output, optional. VkDrawIndexedIndirectCommand[buckets], one for each bucket. STORAGE usage. Fields that are not
@@ -470,11 +472,11 @@ typedef struct GpgpSpawnInfo {
    *  BUDGET_EXCEEDED it may also contain terminals that were omitted. STORAGE usage. Not if the recording only
    *  counts. */
   GpgpBuffer bounds;
-  const GpgpSpawnCamera* camera; /**< Optional. What rules see of this recording's shapes. @lifetime call */
+  const GpgpSpawnCamera* camera; /**< Optional. The camera that the rules of the grammar refer to. @lifetime call */
   /** Input and output, optional. GpgpAxiomRange[axiomCount]: every axiom writes its own range of instances and nothing
-   *  else. To derive some axioms anew, record these alone, each with its range; all other instances stay as they are.
-   *  Ranges must not overlap. What ends behind the buffer does not fit. STORAGE usage. Without draws, bounds and
-   * regions, and not in spawners that are ordered, compact or for vertices. */
+   *  else. To derive some axioms anew, record only these, each with its range; all other instances keep their contents.
+   *  Ranges must not overlap. Instances beyond the end of the buffer do not fit. STORAGE usage. Not allowed with draws,
+   *  bounds or GPGP_SPAWN_REGIONS, nor in spawners that are ordered, compact or for vertices. */
   GpgpBuffer ranges;
   /** Optional. Measures each axiom. The results come with the report (GpgpSpawnReport::axioms), when the frame is safe:
    *  nothing waits. maxTerminals bounds the recording; where it is too small, the report says BUDGET_EXCEEDED, and some
@@ -510,7 +512,7 @@ typedef struct GpgpSpawnReport {
   uint32_t unfinishedShapes; /**< Shapes that nested deeper than maxDepth. */
   uint32_t rounds;           /**< Rounds that had work. */
   uint32_t keyHash[2];       /**< Hash of path key, terminal, rule and shape of all terminals, independent of order. */
-  uint32_t depth;            /**< How deep rules nested in themselves. */
+  uint32_t depth;            /**< Deepest recursion of rules. */
   uint32_t vertices; /**< Vertices of all terminals, in a spawner for vertices. 6 indices belong to every 4 vertices. */
   uint32_t verticesWritten; /**< At most vertices. Less only with BUDGET_EXCEEDED or if the recording only counts. */
   uint32_t colliders;       /**< Shapes that Collider had to register. With this maxColliders all would have fitted. */

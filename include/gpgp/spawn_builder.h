@@ -1,11 +1,11 @@
-/* gpgp spawn: grammars that are made in code instead of text. They give the same operator graph. All functions are in
- * libgpgp_compiler.
+/* gpgp spawn: grammars that are made in code instead of text. They become the same operator graphs as text. All
+ * functions are in libgpgp_compiler.
  *
  *   gpgpCreateGrammarBuilder -> gpgpAdd... -> gpgpCompileGrammar (GpgpGrammarSource::builder) -> blob
  *
- * Everything that was added is checked when it is compiled. Each error is one message, which names the rule and
- * operator and says what was expected. The functions that add therefore return no errors: a NULL name, an unknown value
- * or a lack of memory is an error of compiling, too. Rules and terminals are referred to by name, and a name may be
+ * Everything is checked when the builder is compiled. Each error is one message, which names the rule and operator and
+ * says what was expected. The functions that add something therefore return no errors. A NULL name, an unknown value or
+ * a lack of memory is reported by the compilation, too. Rules and terminals are referred to by name, and a name may be
  * used before it is defined. The operators are those of the language: see docs/guide/grammars.md.
  *
  *   const GpgpGrammarValue axis = GPGP_GRAMMAR_VALUE(GPGP_VALUE_X);
@@ -54,11 +54,12 @@ enum {
   GPGP_VALUE_SHAPE_NORMAL_Z = 18,
   /** ShapeRotation(X, X): component X of the shape's X axis in object space. Others: + 3 * axis + component. */
   GPGP_VALUE_SHAPE_ROTATION_XX = 19,
-  /** From the camera of the recording to the shape's centre, metres. 0 without a camera. No attribute, nor the next
-   *  two: see GpgpSpawnCamera. */
+  /** Distance in metres from the recording's camera to the shape's centre. 0 without a camera. This value and the next
+   *  two are not attributes of the shape: see GpgpSpawnCamera. */
   GPGP_VALUE_CAMERA_DISTANCE = 28,
-  GPGP_VALUE_SCREEN_SIZE = 29, /**< Pixels that the sphere around the shape is wide. 2^100 without a camera. */
-  GPGP_VALUE_OUT_OF_VIEW = 30  /**< Metres that the sphere lies outside of the frustum. 0 inside, and without one. */
+  GPGP_VALUE_SCREEN_SIZE = 29, /**< Diameter in pixels of the sphere around the shape. 2^100 without a camera. */
+  /** Distance in metres of the sphere from the frustum. 0 inside, and without a camera. */
+  GPGP_VALUE_OUT_OF_VIEW = 30
 };
 
 /** A value that an operator takes: a number, or what its id stands for. */
@@ -143,7 +144,7 @@ enum {
    *  Measures: 0 the height, 1 the slope as rise by run, 2 the angle in degrees. */
   GPGP_OPERATOR_RAISE_ROOF = 25,
   /** Values: face, overhang, overhang at gables. One successor. Faces: 0 to 3 the sides in the order of shed roofs, 4
-   * the bottom. */
+   *  the bottom. */
   GPGP_OPERATOR_TO_ROOF_FACE = 26
 };
 
@@ -156,8 +157,8 @@ typedef struct GpgpGrammarSuccessor {
   GpgpGrammarOperator op; /**< The operator if name is NULL, else 0. */
 } GpgpGrammarSuccessor;
 
-/** Adds an operator. It becomes part of the grammar when it is used, either as the successor of an operator or as a
- *  rule. It can be used once. What several places need must be a rule. Operators nest at most 200 deep. In
+/** Adds an operator. It becomes part of the grammar when it is used as the successor of an operator or as the body of a
+ *  rule. It can be used once. To use it in several places, make it a rule. Operators nest at most 200 deep. In
  *  libgpgp_compiler. @threads handle @lifetime call */
 GPGP_API GpgpGrammarOperator GPGP_CALL gpgpAddOperator(GpgpGrammarBuilder builder, GpgpOperatorKind kind,
                                                        const GpgpGrammarValue* values, uint32_t valueCount,
@@ -176,11 +177,11 @@ GPGP_API void GPGP_CALL gpgpAddTerminal(GpgpGrammarBuilder builder, const char* 
 GPGP_API void GPGP_CALL gpgpAddRule(GpgpGrammarBuilder builder, const char* name, const char* successor,
                                     GpgpGrammarOperator op);
 
-/** Gives a rule a priority, at most 65535. The default is 0. Priorities order what shapes do with each other: the
- *  Collider and IfCollides operators of a priority are derived after all of those of higher priorities. So an
- *  IfCollides does not see colliders of lower priorities, and does not wait for them. A priority applies to the
- *  operators in the body of the rule, not to the rules that they lead to. It also holds between linked grammars. See
- *  docs/guide/grammars.md. In libgpgp_compiler. @threads handle @lifetime call */
+/** Gives a rule a priority, at most 65535. The default is 0. Priorities order the interactions of shapes: the Collider
+ *  and IfCollides operators of a priority are derived after all of those of higher priorities. So an IfCollides does
+ *  not see colliders of lower priorities, and does not wait for them. A priority applies to the operators in the body
+ *  of the rule, not to the rules that they lead to. It also holds between linked grammars. See docs/guide/grammars.md.
+ *  In libgpgp_compiler. @threads handle @lifetime call */
 GPGP_API void GPGP_CALL gpgpSetRulePriority(GpgpGrammarBuilder builder, const char* rule, uint32_t priority);
 
 /** Adds an axiom line: the type of a start shape, and the rule or terminal that it goes to. The first one is the

@@ -13,8 +13,8 @@
  * (x, y) + size * p in layout space.
  * Positions in a text are byte offsets into the UTF-8 that was given. Text is horizontal.
  *
- * Memory comes from the C++ heap; the libraries underneath use their own. There is no context that could recognise a
- * destroyed handle, so using one is undefined.
+ * Memory comes from the C++ heap; FreeType, HarfBuzz, FriBidi and ICU use their own allocators. Destroyed handles are
+ * not recognised, since there is no context: using one is undefined behaviour.
  */
 #ifndef GPGP_TEXT_H
 #define GPGP_TEXT_H
@@ -229,7 +229,7 @@ typedef struct GpgpShaperReport {
 } GpgpShaperReport;
 #define GPGP_SHAPER_REPORT_INIT GPGP_INIT(GpgpShaperReport, GPGP_STRUCTURE_SHAPER_REPORT)
 
-/** Returns how well the shaper's cache does. @threads handle */
+/** Returns the state of the shaper's cache. @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpGetShaperReport(GpgpShaper shaper, GpgpShaperReport* report);
 
 /* ---------------------------------------------------------------- layout */
@@ -263,7 +263,7 @@ typedef struct GpgpTextStyle {
   const GpgpFontFeature* features; /**< in addition to the features that are on by default */
   uint32_t featureCount;
   VkBool32 underline, strike;
-  /** Outlined text: width in pixels, 0 to 100000, of a line along the glyphs' edges; 0: none. The line lies below all
+  /** Outlined text: width in pixels, 0 to 100000, of a line along the glyphs' edges; 0: none. The line lies behind all
    *  glyphs of the text, so half its width shows around them.
    *
    *  The layout only checks outlineWidth and outlineColor; it reserves no space for the line. The engine finds them
@@ -335,7 +335,7 @@ GPGP_API GpgpResult GPGP_CALL gpgpCreateLayout(GpgpShaper shaper, GpgpLayout* la
 GPGP_API void GPGP_CALL gpgpDestroyLayout(GpgpLayout layout);
 
 /** Lays out a text, which replaces the previous one. After an error the layout still holds the previous text. Only
- *  after OUT_OF_HOST_MEMORY it is empty.
+ *  after OUT_OF_HOST_MEMORY is it empty.
  *  Errors: INVALID_ARGUMENT (a style without a font, a number or colour out of range, a span beyond the text; the
  *  message names the span and the field), INVALID_HANDLE (a font, the shaper), INVALID_STRUCT, OUT_OF_HOST_MEMORY.
  *  @threads handle @lifetime call */
@@ -357,7 +357,7 @@ typedef struct GpgpTextGlyph {
 
 typedef struct GpgpTextLine {
   uint32_t begin, end;   /**< bytes, with the line break; a line that was cut off ends at its ellipsis */
-  float left, width;     /**< without white space at the line's end, which hangs out */
+  float left, width;     /**< without white space at the line's end, which hangs beyond it */
   float top, height;     /**< pixels */
   float baseline;        /**< y, pixels */
   float ascent, descent; /**< the largest of the line's fonts, pixels */
@@ -429,7 +429,8 @@ typedef struct GpgpCaret {
   VkBool32 splitRightToLeft; /**< direction of the preceding character */
 } GpgpCaret;
 
-/** Returns the caret at a byte offset. An offset within a grapheme means its start, one beyond the text means its end.
+/** Returns the caret at a byte offset. An offset within a grapheme counts as its start, and one beyond the text as the
+ *  text's end.
  *
  *  trailing VK_TRUE: the caret belongs to the character before the offset. Where a line wraps, it then stands at the
  *  end of that line, not at the start of the next. Elsewhere trailing makes no difference. @threads handle */

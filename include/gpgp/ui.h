@@ -80,33 +80,34 @@ GPGP_API GpgpResult GPGP_CALL gpgpPushOpacity(GpgpList list, float opacity);
  *  Errors: INVALID_ARGUMENT (not 0 to 1; nested too deep). @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpPushGroup(GpgpList list, float opacity);
 
-/** What is done with the picture of a layer. Zeroed, it shows nothing: set opacity to 1. */
+/** How a layer is composited. A zeroed layer shows nothing: set opacity to 1. */
 typedef struct GpgpListLayer {
   GpgpBlendMode blend;          /**< with what lies behind, inside the layer around it */
   float opacity;                /**< 0 to 1 */
   const GpgpFilterStep* filter; /**< NULL: none. As GpgpLayer::filter (layers.h); filter space is the current space. */
   uint32_t filterCount;         /**< at most GPGP_MAX_FILTER_STEPS; 0 while `filter` is not NULL: nothing shows */
-  /** VK_FALSE: the filter takes the layer's picture. VK_TRUE: it takes what lies behind, inside the layer around it,
-   * and its result is painted over that, with the clips, mask and opacity of the layer; the picture follows on top. The
-   *  canvas's background and what the engine draws behind the canvas are not part of it. */
+  /** VK_FALSE: the filter is applied to the layer's picture. VK_TRUE: it is applied to the backdrop, which is
+   *  everything painted earlier in the enclosing layer. The result is painted over the backdrop with the clips, mask
+   *  and opacity of the layer, and the layer's picture on top. The backdrop does not include the canvas's background or
+   *  what the engine draws behind the canvas. */
   VkBool32 backdrop;
-  /** Left, top, right, bottom in the current space: nothing of the layer shows outside of the box around it on the
-   *  canvas. All 0: no such box. It spares work where the clips around are larger. */
+  /** Left, top, right, bottom in the current space. Nothing of the layer shows outside the bounding box of this
+   *  rectangle on the canvas. All 0: no bounds. Bounds save work where the clips around the layer are larger. */
   float bounds[4];
-  uint32_t mask; /**< what gpgpPushMask gave; 0: none */
+  uint32_t mask; /**< the number that gpgpPushMask returned; 0: none */
   GpgpMaskKind maskKind;
-  GpgpImageEncoding maskEncoding; /**< of what luminance is computed from */
+  GpgpImageEncoding maskEncoding; /**< which colours luminance is computed from */
   VkBool32 maskInverted;          /**< VK_TRUE: 1 - the mask's alpha multiplies the layer; for GPGP_MASK_ALPHA */
 } GpgpListLayer;
 
-/** Pushes a layer: everything added until the matching gpgpPopState makes a picture of its own, which is then filtered,
- *  clipped, masked, made less than opaque and blended with what lies behind, in this order. The clips pushed around a
- *  layer cut its result, not what goes into its filter; clips, groups and layers may be pushed inside.
+/** Pushes a layer: everything added until the matching gpgpPopState is rendered into a picture of its own. The picture
+ *  is filtered, clipped, masked, multiplied by the opacity and blended with what lies behind, in this order. The clips
+ *  pushed around a layer cut its result, not the input of its filter. Clips, groups and layers may be pushed inside.
  *
- *  The canvas must be made with room for layers (GpgpCanvasCreateInfo::maxLayerPixels). A layer takes pictures as large
- *  as what of it can be seen. Each layer, each clip around one, and each stretch of things between layers counts
- *  against maxDrawings. A list with layers is one thing for budgets: where they do not suffice, it and all above it are
- *  left out.
+ *  The canvas must be made with room for layers (GpgpCanvasCreateInfo::maxLayerPixels). A layer needs pictures as large
+ *  as its visible part. Each layer, each clip around a layer, and each run of entries between layers counts against
+ *  maxDrawings. For budgets, a list with layers is one unit: if it does not fit, the whole list and everything painted
+ *  after it are left out.
  *
  *  Not supported: layers inside groups, which fade as a whole themselves; GPGP_FILTER_COMPONENT_TRANSFER,
  *  CONVOLVE_MATRIX, TURBULENCE and GROUP; filters and masks in perspective (the recording fails).
@@ -114,10 +115,10 @@ typedef struct GpgpListLayer {
  *  @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpPushLayer(GpgpList list, const GpgpListLayer* layer);
 
-/** Pushes a mask: everything added until the matching gpgpPopState is painted only as a mask of layers that name it. It
- *  lies in the space in which it was added, and begins without the clips, opacities and groups around it. Writes the
- *  mask's number for GpgpListLayer::mask, which holds until the list is reset, for any number of layers that are pushed
- *  after the mask was popped.
+/** Pushes a mask: everything added until the matching gpgpPopState is painted only as a mask of the layers that name
+ *  it. The mask is in the space that is current now, and ignores the clips, opacities and groups around it. mask
+ *  receives its number for GpgpListLayer::mask. Any number of layers that are pushed after the mask was popped can use
+ *  the number, until the list is reset.
  *  Errors: INVALID_ARGUMENT (nested too deep), OUT_OF_HOST_MEMORY. @threads handle */
 GPGP_API GpgpResult GPGP_CALL gpgpPushMask(GpgpList list, uint32_t* mask);
 
@@ -213,13 +214,13 @@ typedef struct GpgpListTriangles {
   uint64_t id; /**< chosen by the engine, returned by gpgpHitTest; or GPGP_ID_NOT_HIT */
 } GpgpListTriangles;
 
-/** Paints triangles on top of what is in the list. Each counts as a shape (maxShapes, maxPaths); those without extent
- *  or whose corners are all transparent are left out. They are one entry for hit tests.
+/** Paints triangles on top of what is in the list. Each counts as a shape (maxShapes, maxPaths); triangles without
+ *  area, or with only transparent corners, are left out. They are one entry for hit tests.
  *
  *  Where triangles share two corners, each sample of a pixel lies in one of them, under every transform: there are no
- *  seams, and nothing is painted twice. Edges are as smooth as GpgpCanvasInfo::samples makes them, and take no part in
- *  exactArea. With samples 1, each pixel is painted whole or not at all, by its middle. Colours are interpolated as the
- *  canvas mixes them (blendSrgb), premultiplied or straight as they are given, and in perspective.
+ *  seams, and nothing is painted twice. Edges are as smooth as GpgpCanvasInfo::samples makes them; exactArea does not
+ *  apply to them. With 1 sample, a pixel is painted if its centre is inside. Colours are interpolated in the encoding
+ *  in which the canvas mixes them (blendSrgb), premultiplied or straight as they are given, and perspective-correctly.
  *  Errors: INVALID_ARGUMENT (the message names vertex or index), UNSUPPORTED (2^32 triangles), OUT_OF_HOST_MEMORY.
  *  After an error nothing has been added. @threads handle @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpAddTriangles(GpgpList list, const GpgpListTriangles* triangles);

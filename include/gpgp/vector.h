@@ -4,7 +4,7 @@
  *                       these regions. Independent of resolution: each recording flattens curves to within 1/32 pixel.
  *   glyph set (asset)   Many small drawings under keys that the engine chooses. Glyphs can be added at any time.
  *   canvas (recorder)   Rasterises drawings, text and lists. Its budgets set its size.
- *   canvas history      Keeps one rasterised canvas, to be drawn inside the engine's render pass.
+ *   canvas history      Keeps one rasterised canvas, which can be drawn inside the engine's render pass.
  *   list                Shapes, images, text and drawings that the engine adds every frame (ui.h).
  *   patch recorder      Draws drawings and text as geometry inside the engine's render pass, with no pass before.
  *
@@ -21,253 +21,79 @@
  */
 #ifndef GPGP_VECTOR_H
 #define GPGP_VECTOR_H
-#include <gpgp/core.h>
-#include <gpgp/layers.h>
+#include <gpgp/paths.h>
+#include <gpgp/svg.h>
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* ---------------------------------------------------------------- paths */
+/* ---------------------------------------------------------------- drawing */
 
-/** One step of a path. Each verb takes points from GpgpPath::points. */
-typedef uint8_t GpgpPathVerb;
-enum {
-  GPGP_PATH_MOVE = 0,  /**< 1 point: begins a contour. When filled, an open contour is closed by a line. */
-  GPGP_PATH_LINE = 1,  /**< 1 point: end */
-  GPGP_PATH_QUAD = 2,  /**< 2 points: control, end */
-  GPGP_PATH_CUBIC = 3, /**< 3 points: control, control, end */
-  GPGP_PATH_CLOSE = 4, /**< 0 points */
-  /** SVG's elliptical arc. 3 points: (radius x, radius y), (rotation of the x axis in degrees, GPGP_ARC_... flags),
-   *  end. Radii that are too small to reach the end grow until they do. A radius of 0 makes the arc a line. */
-  GPGP_PATH_ARC = 5
-};
-enum {
-  GPGP_ARC_LARGE = 1, /**< Takes the longer of the two ways round. */
-  GPGP_ARC_SWEEP = 2  /**< Takes the way along which angles grow: clockwise, as y points down. */
-};
+/** Replaces one path of a drawing. */
+typedef struct GpgpPathEdit {
+  uint32_t index; /**< index of the replaced path in the array from which the original drawing was made */
+  GpgpPath path;  /**< Stays in the replaced path's group; GpgpPath::group is ignored. */
+} GpgpPathEdit;
 
-/** Which winding numbers are inside a filled path. */
-typedef int32_t GpgpFillRule;
-enum { GPGP_FILL_NON_ZERO = 0, GPGP_FILL_EVEN_ODD = 1 };
-
-typedef int32_t GpgpGradientKind;
-enum {
-  GPGP_GRADIENT_LINEAR = 0, /**< along the line from `start` to `end` */
-  /** Between the circles (start, startRadius) and (end, endRadius), as in HTML's canvas. The circle moves and changes
-   *  its radius evenly from one to the other, and on beyond both. Where several of these circles pass through a point,
-   *  the one furthest along paints it. Nothing is painted where no circle passes, where both circles are equal, or
-   *  where both are points. */
-  GPGP_GRADIENT_RADIAL = 1
-};
-
-/** What a gradient paints before its first stop and after its last one. */
-typedef int32_t GpgpSpread;
-enum {
-  GPGP_SPREAD_PAD = 0,    /**< the colour of the nearest stop */
-  GPGP_SPREAD_REPEAT = 1, /**< the gradient again, from its start */
-  GPGP_SPREAD_REFLECT = 2 /**< the gradient again, alternately backwards and forwards */
-};
-
-typedef struct GpgpGradientStop {
-  float offset;   /**< 0 to 1. An offset below the previous stop's counts as equal to it. */
-  float color[4]; /**< linear RGB, 0 to 10000; straight alpha, 0 to 1 */
-} GpgpGradientStop;
-
-typedef struct GpgpGradient {
-  GpgpGradientKind kind;
-  GpgpSpread spread;
-  float transform[6];           /**< gradient space to drawing space: x' = t0 x + t2 y + t4, y' = t1 x + t3 y + t5 */
-  float start[2], end[2];       /**< gradient space */
-  float startRadius, endRadius; /**< gradient space; radial gradients only; not negative */
-  const GpgpGradientStop* stops;
-  uint32_t stopCount; /**< 1 to 65536 */
-  /** VK_TRUE: stops are mixed as sRGB encodes them, as SVG does. VK_FALSE: stops are mixed in linear light. */
-  VkBool32 interpolateSrgb;
-} GpgpGradient;
-
-/** Paints a path with one of the engine's images. GpgpCanvasImage says what the image holds. Its sampler's address
- *  modes decide what lies beyond texture coordinates 0 to 1. */
-typedef struct GpgpImagePaint {
-  /** Index into GpgpCanvasInfo::images, counted from the item's firstImage; below GPGP_MAX_IMAGES. */
-  uint32_t image;
-  /** Texture coordinates (0 to 1 across the image) to drawing space: x' = t0 u + t2 v + t4, y' = t1 u + t3 v + t5. */
-  float transform[6];
-} GpgpImagePaint;
-
-/** How an open stroke or a dash ends. */
-typedef int32_t GpgpCap;
-enum { GPGP_CAP_BUTT = 0, GPGP_CAP_ROUND = 1, GPGP_CAP_SQUARE = 2 };
-
-/** How a stroke goes round a corner. */
-typedef int32_t GpgpJoin;
-enum { GPGP_JOIN_MITER = 0, GPGP_JOIN_ROUND = 1, GPGP_JOIN_BEVEL = 2 };
-
-/** A line along a path, with SVG's rules. Its outline is accurate to a twentieth of a pixel up to `scale`. */
-typedef struct GpgpStroke {
-  float width; /**< drawing units, not negative; 0: a hairline, one pixel wide at `scale` */
-  GpgpCap cap;
-  GpgpJoin join;
-  /** Longest miter, in stroke widths; at least 1, or 0 for the default of 4. Longer miters become bevels. */
-  float miterLimit;
-  /** Lengths of dashes and gaps in turn, in drawing units. An odd number of lengths is used twice over. NULL: a solid
-   *  line. A path of more than 65536 dashes is UNSUPPORTED. In an SVG such a path is drawn solid, with a message. */
-  const float* dashes;
-  uint32_t dashCount;
-  float dashOffset; /**< where in the dash pattern the path begins, drawing units */
-  float scale;      /**< largest scale at which the drawing is shown, pixels per drawing unit; 0: 1 */
-} GpgpStroke;
-
-/** A filled or stroked path in drawing space. */
-typedef struct GpgpPath {
-  const GpgpPathVerb* verbs;
-  uint32_t verbCount;
-  const float* points; /**< x, y pairs, as many as the verbs need; finite, within +-1e7 */
-  uint32_t pointCount;
-  GpgpFillRule fillRule;
-  /** Linear RGB, 0 to 10000; straight alpha, 0 to 1. With a gradient or an image, only alpha is used. */
-  float color[4];
-  const GpgpGradient* gradient; /**< NULL: the path is painted in its colour. */
-  const GpgpStroke* stroke;    /**< NULL: the path is filled. Otherwise only its stroke is painted, without fillRule. */
-  const GpgpImagePaint* image; /**< NULL: no image. Not together with a gradient. */
-  /** Largest scale at which the drawing is shown, pixels per drawing unit; 0: 1. Arcs are accurate to 1e-4 of a pixel
-   *  up to this scale. */
-  float scale;
-  uint32_t group; /**< 0: none; otherwise 1 + the index of its group in GpgpDrawingCreateInfo::groups */
-} GpgpPath;
-
-enum {
-  /** Maximum nesting depth of a list's groups (ui.h), and of groups of paths that are less than opaque and no layers:
-   *  deeper ones become layers (layers.h). */
-  GPGP_MAX_OPACITY_DEPTH = 4,
-  GPGP_MAX_CLIP_DEPTH = 16 /**< Maximum nesting depth of groups with a clip. */
-};
-
-/** Paths that are clipped or faded together. The paths of a group that is less than opaque must follow one another in
- *  the drawing. Paths of groups inside it count as its own; no other path may lie between them. */
-typedef struct GpgpPathGroup {
-  uint32_t parent; /**< 0: none; otherwise 1 + the index of an earlier group, which contains this one */
-  /** 0 to 1. Applies to the group as a whole: where its paths overlap, the lower ones do not show through. */
-  float opacity;
-  /** The group shows only inside the union of these paths, which themselves paint nothing. NULL: no clip. */
-  const GpgpPath* clip;
-  uint32_t clipCount; /**< 0 while `clip` is not NULL: the group is hidden. */
-  /** Blend mode, mask, filter (layers.h). NULL: none. Then the group is a layer all the same if a layer lies inside it
-   *  and it has a clip or is less than opaque. The paths of a layer must follow one another, as above; a layer without
-   *  paths shows nothing. */
-  const GpgpLayer* layer;
-} GpgpPathGroup;
-
-/** What a drawing or a glyph set keeps on the device, by who draws it. A combination of flags. */
-typedef uint64_t GpgpDrawingMethods;
-#define GPGP_DRAWING_FLATTENED ((GpgpDrawingMethods)1) /**< outlines, which canvases flatten and rasterise */
-#define GPGP_DRAWING_IN_PASS ((GpgpDrawingMethods)2)   /**< CPatches in cells, for gpgpRecordDrawPatches */
-/** CPatches for canvases whose method is GPGP_CANVAS_PATCHES; with GPGP_DRAWING_FLATTENED, and for drawings alone. They
- *  are made with the drawing, not baked. */
-#define GPGP_DRAWING_PATCHES ((GpgpDrawingMethods)4)
-
-/* ---------------------------------------------------------------- compiler (libgpgp_compiler) */
-
-/** What gpgpCompileSvg found in an SVG, and how long it took. */
-typedef struct GpgpSvgReport {
-  uint32_t paths, curves, patches;
-  double parseMilliseconds;   /**< from bytes to paths */
-  double convertMilliseconds; /**< from paths to CPatches, strokes included */
-} GpgpSvgReport;
-
-/** Receives a stage of the conversion as SVG text, to be looked at. The text is not null-terminated. @lifetime call */
-typedef void(GPGP_CALL* GpgpStageFn)(void* userData, const char* stage, const char* svg, size_t size);
-
-/** Receives an image of an `image` or `feImage` element: a PNG, JPEG or other file that the element embeds as a data:
- *  URI, or that `fileSystem` reads. An image that several elements share is passed once.
- *
- *  To accept the image, the callback writes its size in pixels and returns VK_TRUE. The drawing then paints with image
- *  number `index` (GpgpImagePaint::image), and the engine passes a texture of it to recordings. If the callback
- *  returns VK_FALSE, the element is reported as unsupported. @lifetime call */
-typedef VkBool32(GPGP_CALL* GpgpSvgImageFn)(void* userData, uint32_t index, const void* data, size_t size,
-                                            uint32_t* width, uint32_t* height);
-
-/** A stretch of an SVG's text in one style. */
-typedef struct GpgpSvgTextSpan {
-  uint32_t begin, end;  /**< bytes of the text */
-  const char* families; /**< as font-family lists them, for example "Arial, 'DejaVu Sans', serif"; may be empty */
-  const char* language; /**< BCP 47; may be empty */
-  float size;           /**< units per em, above 0 */
-  float weight;         /**< 1 to 1000; 400 is regular */
-  float letterSpacing;  /**< units after each grapheme */
-  VkBool32 italic, smallCaps, unkerned; /**< unkerned: pairs of glyphs keep their distance */
-} GpgpSvgTextSpan;
-
-/** A line of an SVG's text. Spans cover it without gaps, in order. */
-typedef struct GpgpSvgText {
-  const char* text; /**< UTF-8, not terminated */
-  uint32_t size;    /**< bytes */
-  const GpgpSvgTextSpan* spans;
-  uint32_t spanCount;
-  VkBool32 rightToLeft; /**< the direction of the whole line */
-} GpgpSvgText;
-
-/** A placed glyph of such a line. */
-typedef struct GpgpSvgGlyph {
-  uint32_t cluster;      /**< offset of the first byte that the glyph stands for */
-  float x, y;            /**< origin in units, from where the line begins on the left, +Y down */
-  float advance;         /**< units to where the next cluster begins; 0 for all glyphs of a cluster but the first */
-  float size;            /**< units per em */
-  const GpgpPath* paths; /**< in em, +Y down, as gpgpGetGlyphOutline returns them */
-  uint32_t pathCount;
-  const VkBool32* foreground; /**< one for each path: painted as the SVG says, not in its own colour. NULL: all are. */
-  /** Of the glyph's font, in em, as in GpgpFontInfo. */
-  float ascent, descent, xHeight, underlinePosition, underlineThickness, strikePosition, strikeThickness;
-  VkBool32 incomplete; /**< VK_TRUE: a part of the glyph, such as an image, is not among the paths */
-} GpgpSvgGlyph;
-typedef void(GPGP_CALL* GpgpSvgGlyphFn)(void* glyphUserData, const GpgpSvgGlyph* glyph);
-/** Shapes a line, and calls glyphFn for each of its glyphs from left to right. Any other result than SUCCESS leaves
- *  the line out, and a warning says so. */
-typedef GpgpResult(GPGP_CALL* GpgpSvgTextFn)(void* userData, const GpgpSvgText* text, GpgpSvgGlyphFn glyphFn,
-                                             void* glyphUserData);
-
-typedef struct GpgpSvgSource {
+typedef struct GpgpDrawingCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
-  const char* name; /**< file name, for messages */
-  const void* data; /**< an SVG file, plain or gzip-compressed (.svgz) */
+  const char* label;
+  /* Give exactly one of data, filePath, paths and base. */
+  const void* data; /**< A baked drawing in any memory, for example a mapped file. Read during the call only. */
   size_t size;
-  /** Receives errors. Receives as warnings what is unsupported (code UNSUPPORTED) and what is invalid (INVALID_DATA),
-   *  with the element's name. The message's label is the place, "file:line:column". The file may be a style sheet.
-   *  Where no line is known, the label is the name alone. */
-  GpgpMessageFn messageFn;
-  void* messageUserData;
-  const GpgpJobSystem* jobSystem; /**< optional: converts paths in parallel */
-  GpgpSvgReport* report;          /**< optional: written when the import succeeds */
-  GpgpStageFn stageFn;            /**< optional: called for "paths", "pieces", "crossings", "patches", in this order */
-  void* stageUserData;
-  /** Optional: accepts images, at most GPGP_MAX_IMAGES. NULL: images are reported as unsupported. */
-  GpgpSvgImageFn imageFn;
-  void* imageUserData;
-  /** Largest scale at which the drawing is shown, pixels per pixel of its page; 0: 1. Up to this scale, strokes are
-   *  accurate to a twentieth of a pixel and arcs to 1e-4. Non-scaling strokes have their stated width at this scale. */
-  float scale;
-  /** Optional: reads external style sheets and images. Paths are relative to the SVG's folder. They may lead only to
-   *  files in that folder or below it, never to a host. At most 64 style sheets of 16 MiB together and images of 64 MiB
-   *  together are read. NULL: other files are reported as unsupported. */
-  const GpgpFileSystem* fileSystem;
-  /** Who draws the drawing; 0: GPGP_DRAWING_FLATTENED. The file holds what is asked for, and nothing else. Elements
-   *  that patches do not draw are named in warnings (GpgpDrawingCreateInfo::methods). With GPGP_DRAWING_IN_PASS masks,
-   *  filters and blend modes are left out and named. */
+  const char* filePath;  /**< a baked drawing's file, read through the context's file callbacks */
+  const GpgpPath* paths; /**< painted in order, the first at the bottom */
+  uint32_t pathCount;
+  const GpgpPathGroup* groups; /**< the groups that `paths` refer to; only with paths */
+  uint32_t groupCount;
+  /** An editable drawing of the same context. The new drawing equals it except for the edits, and only the edited
+   *  paths are converted. The result equals a drawing made from all paths. The base does not change and may be
+   *  destroyed. */
+  GpgpAsset base;
+  const GpgpPathEdit* edits; /**< only with base; of two edits with the same index the later one wins */
+  uint32_t editCount;
+  /** VK_TRUE: the drawing can be a base. Keeps its tables in host memory, about twice its size on the device. */
+  VkBool32 editable;
+  /** VK_TRUE: gpgpHitTest can find the drawing's paths. Keeps its outlines in host memory, about its size on the
+   *  device. Editable drawings can be hit-tested too, at no further cost. */
+  VkBool32 hitTestable;
+  /** 0: what the baked data holds; GPGP_DRAWING_FLATTENED for paths and edits. Canvases, lists and hit tests need
+   *  GPGP_DRAWING_FLATTENED. Other representations take no memory.
+   *
+   *  Patches cannot draw clips, images, or groups that have an opacity below 1 and hold more than one path. Each path
+   *  that needs one of these is left out of the patches, and a warning names it (code UNSUPPORTED).
+   *  GpgpDrawingInfo::pathsLeftOut counts these paths. */
   GpgpDrawingMethods methods;
-  /** Optional: shapes text in the engine's fonts, for example with libgpgp_text. NULL: text is reported as
-   *  unsupported. */
-  GpgpSvgTextFn textFn;
-  void* textUserData;
-  /** VkPhysicalDeviceLimits::maxStorageBufferRange of the devices that the drawing is for; 0: 2^32 - 1. A drawing whose
-   *  outlines need more bytes is refused (UNSUPPORTED) as soon as that is known, not when all of it is converted. */
-  uint32_t maxStorageBufferRange;
-} GpgpSvgSource;
-#define GPGP_SVG_SOURCE_INIT GPGP_INIT(GpgpSvgSource, GPGP_STRUCTURE_SVG_SOURCE)
+} GpgpDrawingCreateInfo;
+#define GPGP_DRAWING_CREATE_INFO_INIT GPGP_INIT(GpgpDrawingCreateInfo, GPGP_STRUCTURE_DRAWING_CREATE_INFO)
 
-/** Converts an SVG to a baked drawing (.gpgpv). In libgpgp_compiler. Free the blob with gpgpFreeBlob.
- *  Errors: INVALID_DATA (not an SVG), INVALID_ARGUMENT, UNSUPPORTED (too many outlines), OUT_OF_HOST_MEMORY.
- *  @threads any @lifetime call */
-GPGP_API GpgpResult GPGP_CALL gpgpCompileSvg(const GpgpSvgSource* source, GpgpBlob* blob);
+/** Makes a drawing from baked data, from paths or from another drawing, and queues it for upload. Baked data is
+ *  checked; paths are converted to CPatches.
+ *
+ *  For paths that change from frame to frame, make each frame's drawing from the previous one. Draw the previous one
+ *  until the new one is resident, then destroy it.
+ *  Errors: INVALID_DATA, INVALID_ARGUMENT (the message gives the path's index), INVALID_HANDLE, IO, OUT_OF_..._MEMORY,
+ *  UNSUPPORTED (more than 2^29 patches in the drawing; more than 2^21 points or 65536 dashes in a stroke; a path that
+ *  crosses itself millions of times). @threads any @lifetime call */
+GPGP_API GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext context, const GpgpDrawingCreateInfo* info,
+                                                GpgpAsset* drawing);
+
+typedef struct GpgpDrawingInfo {
+  GpgpStructureType sType;
+  void* pNext;
+  float bounds[4]; /**< box of everything that is painted: left, top, right, bottom, in drawing space */
+  /** The page: x, y, width, height, in drawing space. Equals the bounds if the source has no page. */
+  float viewport[4];
+  uint32_t paths, curves, patches;
+  uint32_t pathsLeftOut; /**< paths that gpgpRecordDrawPatches does not draw; 0 without GPGP_DRAWING_IN_PASS */
+} GpgpDrawingInfo;
+#define GPGP_DRAWING_INFO_INIT GPGP_INIT(GpgpDrawingInfo, GPGP_STRUCTURE_DRAWING_INFO)
+
+/** Returns a drawing's bounds and counts. The drawing need not be resident. @threads any */
+GPGP_API GpgpResult GPGP_CALL gpgpGetDrawingInfo(GpgpAsset drawing, GpgpDrawingInfo* info);
+
+/* ---------------------------------------------------------------- glyphs */
 
 /** A small drawing under a key. */
 typedef struct GpgpGlyph {
@@ -302,72 +128,6 @@ typedef struct GpgpGlyphSource {
  *  @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCompileGlyphs(const GpgpGlyphSource* source, GpgpBlob* blob);
 
-/* ---------------------------------------------------------------- drawing */
-
-/** Replaces one path of a drawing. */
-typedef struct GpgpPathEdit {
-  uint32_t index; /**< index of the replaced path in the array from which the original drawing was made */
-  GpgpPath path;  /**< Stays in the replaced path's group; GpgpPath::group is ignored. */
-} GpgpPathEdit;
-
-typedef struct GpgpDrawingCreateInfo {
-  GpgpStructureType sType;
-  const void* pNext;
-  const char* label;
-  /* Give exactly one of data, filePath, paths and base. */
-  const void* data; /**< A baked drawing in any memory, for example a mapped file. Read during the call only. */
-  size_t size;
-  const char* filePath;  /**< a baked drawing's file, read through the context's file callbacks */
-  const GpgpPath* paths; /**< painted in order, the first at the bottom */
-  uint32_t pathCount;
-  const GpgpPathGroup* groups; /**< the groups that `paths` refer to; only with paths */
-  uint32_t groupCount;
-  /** An editable drawing of the same context. The new drawing equals it except for the edits, and only the edited
-   *  paths are converted. The result equals a drawing made from all paths. The base does not change and may be
-   *  destroyed. */
-  GpgpAsset base;
-  const GpgpPathEdit* edits; /**< only with base; of two edits with the same index the later one counts */
-  uint32_t editCount;
-  /** VK_TRUE: the drawing can be a base. Keeps its tables in host memory, about twice its size on the device. */
-  VkBool32 editable;
-  /** VK_TRUE: gpgpHitTest can find the drawing's paths. Keeps its outlines in host memory, about its size on the
-   *  device. Editable drawings can be hit-tested too, at no further cost. */
-  VkBool32 hitTestable;
-  /** 0: what the baked data holds; GPGP_DRAWING_FLATTENED for paths and edits. Canvases, lists and hit tests need
-   *  GPGP_DRAWING_FLATTENED. Only what is asked for takes memory.
-   *
-   *  Patches do not draw clips, images, and groups that are less than opaque and hold more than one path. Each path
-   *  that needs one of these is named in a warning (code UNSUPPORTED) and left out of the patches;
-   *  GpgpDrawingInfo::pathsLeftOut counts them. */
-  GpgpDrawingMethods methods;
-} GpgpDrawingCreateInfo;
-#define GPGP_DRAWING_CREATE_INFO_INIT GPGP_INIT(GpgpDrawingCreateInfo, GPGP_STRUCTURE_DRAWING_CREATE_INFO)
-
-/** Makes a drawing from baked data, from paths or from another drawing, and queues it for upload. Baked data is
- *  checked; paths are converted to CPatches.
- *
- *  For paths that change from frame to frame, make each frame's drawing from the previous one. Draw the previous one
- *  until the new one is resident, then destroy it.
- *  Errors: INVALID_DATA, INVALID_ARGUMENT (the message gives the path's index), INVALID_HANDLE, IO, OUT_OF_..._MEMORY,
- *  UNSUPPORTED (more than 2^29 patches in the drawing; more than 2^21 points or 65536 dashes in a stroke; a path that
- *  crosses itself millions of times). @threads any @lifetime call */
-GPGP_API GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext context, const GpgpDrawingCreateInfo* info,
-                                                GpgpAsset* drawing);
-
-typedef struct GpgpDrawingInfo {
-  GpgpStructureType sType;
-  void* pNext;
-  float bounds[4]; /**< box of everything that is painted: left, top, right, bottom, in drawing space */
-  /** The page: x, y, width, height, in drawing space. Equals the bounds if the source has no page. */
-  float viewport[4];
-  uint32_t paths, curves, patches;
-  uint32_t pathsLeftOut; /**< paths that gpgpRecordDrawPatches does not draw; 0 without GPGP_DRAWING_IN_PASS */
-} GpgpDrawingInfo;
-#define GPGP_DRAWING_INFO_INIT GPGP_INIT(GpgpDrawingInfo, GPGP_STRUCTURE_DRAWING_INFO)
-
-/** Returns a drawing's bounds and counts. The drawing need not be resident. @threads any */
-GPGP_API GpgpResult GPGP_CALL gpgpGetDrawingInfo(GpgpAsset drawing, GpgpDrawingInfo* info);
-
 /* ---------------------------------------------------------------- glyph set */
 
 typedef struct GpgpGlyphSetCreateInfo {
@@ -383,7 +143,7 @@ typedef struct GpgpGlyphSetCreateInfo {
    *  segment takes 64 bytes (a curve has two or three) and a path 48. A gradient takes 64 bytes, each of its stops 32.
    *  A glyph with any gradient takes 48 more. */
   VkDeviceSize maxBytes;
-  GpgpDrawingMethods methods; /**< who draws the glyphs; 0: GPGP_DRAWING_FLATTENED */
+  GpgpDrawingMethods methods; /**< 0: GPGP_DRAWING_FLATTENED */
 } GpgpGlyphSetCreateInfo;
 #define GPGP_GLYPH_SET_CREATE_INFO_INIT GPGP_INIT(GpgpGlyphSetCreateInfo, GPGP_STRUCTURE_GLYPH_SET_CREATE_INFO)
 
@@ -444,14 +204,14 @@ typedef uint64_t GpgpCanvasTargets;
 /** A target in R16G16B16A16_SFLOAT. */
 #define GPGP_CANVAS_TARGET_RGBA16F ((GpgpCanvasTargets)4)
 
-/** How a canvas finds which samples a drawing's paths cover. */
+/** How a canvas decides which samples the paths of a drawing cover. */
 typedef int32_t GpgpCanvasMethod;
 enum {
   /** Outlines are flattened to lines within 1/32 of a pixel. */
   GPGP_CANVAS_FLATTENED = 0,
-  /** Drawings made with GPGP_DRAWING_PATCHES are drawn by their CPatches: the implicit forms of the curves decide every
-   *  sample, without approximation. Other drawings, text and shapes are flattened, in the same painting order. With
-   *  GpgpCanvasInfo::exactArea a pixel's area is that of 256 samples. */
+  /** Drawings made with GPGP_DRAWING_PATCHES are rasterised from their CPatches: the implicit form of each curve
+   *  decides every sample, without flattening. Other drawings, text and shapes are flattened, in the same painting
+   *  order. With GpgpCanvasInfo::exactArea, the area in a pixel is measured with 256 samples. */
   GPGP_CANVAS_PATCHES = 1
 };
 
@@ -466,7 +226,7 @@ typedef struct GpgpCanvasCreateInfo {
   /** Paths in one recording, at most 4194304; 0: 262144. An item that shows a drawing counts GpgpDrawingInfo::paths. A
    *  placed glyph counts its own paths each time. A shape of a list counts 1, and so does a clip that is not a
    *  scissor. The numbers of curves and patches are not limited, as these lie in the drawing's own buffer. A path
-   *  takes 48 bytes, 8 more on hardware devices, and one bit for each square of 128 pixels of the canvas. */
+   *  takes 48 bytes, 8 more on hardware devices, and one bit for each 128 x 128 pixels of the canvas. */
   uint32_t maxPaths;
   /** Tiles of 8 x 8 pixels that a path's edges pass through, summed over all paths, at most 2^28; 0: 131072. Each pair
    *  of a path and such a tile is an entry. It takes 480 bytes, 224 of them for lists; on software devices 384. */
@@ -475,12 +235,14 @@ typedef struct GpgpCanvasCreateInfo {
    *  of tiles. A path that meets the canvas takes, for each row of its box, the box's width in tiles divided by 32,
    *  rounded up. A word takes 16 bytes, on software devices 32. */
   uint32_t maxTileWords;
-  /** Items of all kinds in one recording, not drawings alone; at most 65536; 0: 64. Lists (ui.h) count each of their
-   *  drawings and clips, and each change of transform, clip or group. A drawing with layers counts each of its layers,
-   *  clips of layers, and the paths between them. The number of groups has the same limit, and so
-   *  has the number of different drawings and glyph sets, of which there are at most 2047. Assets share buffers, each
-   * of at most VkPhysicalDeviceLimits::maxStorageBufferRange, of which a recording binds at most 8. A ninth is an
-   * error: it takes assets above 64 KiB each that lie among some 100 MiB of others, or take more than 1 MiB each. */
+  /** Items of all kinds in one recording, not only drawings; at most 65536; 0: 64. A list (ui.h) counts each of its
+   *  drawings and clips, and each change of transform, clip or group. A drawing with layers counts each layer, each
+   *  clip of a layer, and each run of paths between them. The same number limits the groups, and the different drawings
+   *  and glyph sets, of which there may be at most 2047 in any case.
+   *
+   *  Assets share device buffers of at most VkPhysicalDeviceLimits::maxStorageBufferRange, and a recording binds at
+   *  most 8 of them. Needing a ninth is an error. This can only happen with assets above 1 MiB, or with assets above 64
+   *  KiB that lie among some 100 MiB of others. */
   uint32_t maxDrawings;
   /** Glyphs of all texts in one recording, blanks not counted, at most 1048576; 0: 1024. 160 bytes each, and 48 more
    *  for every recording that can be in flight. */
@@ -492,25 +254,25 @@ typedef struct GpgpCanvasCreateInfo {
   /** What recordings will write; 0: anything. Pipelines are made only for these: for a single target half as many, in
    *  half the time. */
   GpgpCanvasTargets targets;
-  /** Pixels of the pictures that drawings with layers (layers.h) are made of in one recording, at most 2^28; 0: none.
-   *  Such a recording takes the canvas itself, the part of it that each layer, mask and clip of a layer covers, and the
-   *  pictures between the steps of the largest filter. Paths behind a layer take a picture, too. A pixel takes 8 bytes.
-   *  The first layered drawing that does not fit and everything painted after it are left out. */
+  /** Pixels of the intermediate pictures that layers (layers.h) need in one recording, at most 2^28; 0: none. A
+   *  recording with layers needs the whole canvas, the part of it that each layer, mask and clip of a layer covers, and
+   *  the intermediate results of the largest filter. Paths that lie behind a layer need a picture as well. A pixel
+   *  takes 8 bytes. The first layered drawing that does not fit and everything painted after it are left out. */
   uint32_t maxLayerPixels;
   /** Operations on these pictures in one recording, at most 65536; 0: 1024. A layer takes one, a step of a filter one
-   * to five. Each takes 304 bytes for every recording that can be in flight. */
+   *  to five. Each takes 304 bytes for every recording that can be in flight. */
   uint32_t maxLayerOperations;
   GpgpCanvasMethod method; /**< 0: GPGP_CANVAS_FLATTENED */
   /** GPGP_CANVAS_PATCHES: pairs of a CPatch and a tile that its curves pass through, at most 2^28; 0: twice
-   *  maxTileEntries. Each takes 16 bytes. Where they do not suffice, the first drawing that is drawn by patches and
+   *  maxTileEntries. Each takes 16 bytes. If there are too few, the first drawing that is drawn by patches and
    *  everything painted after it are left out. */
   uint32_t maxTilePatches;
   /** Images in one recording, at most GPGP_MAX_IMAGES; 0: 8. Rounded up to a multiple of 8. */
   uint32_t maxImages;
   /** Pixels that paths with images cover in recordings of more than 8 images, at most 2^28; 0: maxWidth x maxHeight.
-   * Such recordings find the colours of images before they rasterise, 8 images at a time: a path takes the tiles of 8 x
-   * 8 pixels of its box on the canvas. A pixel takes 8.25 bytes, on canvases with maxImages above 8. Paths that find no
-   *  room are left out, and the report's status is BUDGET_EXCEEDED. */
+   *  Such recordings sample images before they rasterise, 8 images at a time, and store the colours. A path needs all
+   *  tiles of 8 x 8 pixels that its bounding box meets on the canvas. A pixel takes 8.25 bytes, but none if maxImages
+   * is at most 8. Paths that do not fit are left out, and the report's status is BUDGET_EXCEEDED. */
   uint32_t maxImagePixels;
 } GpgpCanvasCreateInfo;
 #define GPGP_CANVAS_CREATE_INFO_INIT GPGP_INIT(GpgpCanvasCreateInfo, GPGP_STRUCTURE_CANVAS_CREATE_INFO)
@@ -601,8 +363,7 @@ extern "C" {
   { .transform = {1, 0, 0, 1, 0, 0}, .opacity = 1 }
 #endif
 
-/** Images that the items of one recording can paint with at most. Each canvas has room for as many as it was made for
- *  (GpgpCanvasCreateInfo::maxImages). */
+/** Maximum number of images in one recording. A canvas can have a lower limit (GpgpCanvasCreateInfo::maxImages). */
 enum { GPGP_MAX_IMAGES = 1024 };
 
 /** How an image encodes colours, as a shader receives them from the sampler. */
@@ -654,8 +415,9 @@ typedef struct GpgpCanvasInfo {
   /** VK_TRUE: the target receives straight colour encoded as sRGB and then multiplied by alpha. PNG files and 2D
    *  compositors expect this encoding. */
   VkBool32 encodeSrgb;
-  /** VK_TRUE: in each pixel, the exact area of the front-most path with an edge replaces its samples: finer steps where
-   *  only one edge passes. Neighbours show nothing between them; equal shapes up to a tenth of the lower one's colour.
+  /** VK_TRUE: in each pixel, the front-most path with an edge there is weighted by the exact area that it covers, not
+   *  by its samples. Edges have finer steps where only one passes through a pixel. Adjacent paths show no seam. Where
+   *  one shape lies on an equal one, up to a tenth of the lower one's colour shows at the edge.
    */
   VkBool32 exactArea;
   VkBool32 blendSrgb;            /**< VK_TRUE: colours are mixed as sRGB encodes them, as SVG renderers do. */
@@ -676,10 +438,10 @@ typedef struct GpgpCanvasInfo {
 /** Rasterises the items into the history, the target, or both.
  *
  *  Both receive the same pixels up to rounding: the history holds half floats, and image stores and attachments round
- *  differently. Compared here: a target, and an attachment of the same format that was cleared to 0 and drawn over. In
- *  R16G16B16A16_SFLOAT they differ by at most one unit in the last place of a half, in R8G8B8A8_UNORM by at most
- *  1/255. An sRGB attachment encodes premultiplied colour, so it is within 1/255 of a target with encodeSrgb only
- *  where the canvas is opaque.
+ *  differently. The comparison is between a target and an attachment of the same format that was cleared to 0 before
+ *  the canvas was drawn. In R16G16B16A16_SFLOAT they differ by at most one unit in the last place of a half, in
+ *  R8G8B8A8_UNORM by at most 1/255. An sRGB attachment encodes premultiplied colour, so it is within 1/255 of a target
+ *  with encodeSrgb only where the canvas is opaque.
  *  NOT_READY: a drawing or glyph that is shown is not resident, the history is not resident, or the canvas is not
  *  prewarmed.
  *  @threads handle @lifetime call; image: frame @pass outside @state compute pipeline, compute descriptor set 0 (and 1
@@ -772,8 +534,8 @@ GPGP_API GpgpResult GPGP_CALL gpgpGetCanvasReport(GpgpRecorder canvas, GpgpCanva
 
 /* ---------------------------------------------------------------- patches inside a render pass */
 
-/** Budgets of a patch recorder. It has no scratch memory. What a recording passes to the GPU takes 240 bytes an item
- *  and 48 bytes a glyph, for every recording that can be in flight. */
+/** Budgets of a patch recorder. It has no scratch memory. It takes 240 bytes for each item and 48 bytes for each glyph,
+ *  for every recording that can be in flight. */
 typedef struct GpgpPatchRecorderCreateInfo {
   GpgpStructureType sType;
   const void* pNext;
@@ -794,7 +556,7 @@ GPGP_API GpgpResult GPGP_CALL gpgpCreatePatchRecorder(GpgpContext context, const
 typedef struct GpgpPatchItem {
   GpgpAsset drawing; /**< made with GPGP_DRAWING_IN_PASS; NULL for a text */
   /** Matrix from drawing or text space (x, y, 0, 1) to clip space, column-major. Any matrix, perspective included:
-   * model, view and projection of a panel in the world, for example. What lies behind the eye is cut off. */
+   *  model, view and projection of a panel in the world, for example. What lies behind the eye is cut off. */
   float clip[16];
   const float* secondClip; /**< multiview targets only: 16 numbers, `clip` for view 1; NULL: `clip` for both views */
   float opacity;      /**< 0 to 1; multiplies the alpha of each path, so overlapping paths show through one another */
@@ -822,8 +584,8 @@ typedef struct GpgpPatchDrawInfo {
  *  magnification.
  *
  *  With one sample, a path's paint is multiplied by the part of the pixel that the path covers. With several, the draw
- *  writes those samples that lie inside the path, so paths that abut show nothing between them. The depth test, if the
- *  target has one, compares each item's own plane. The engine sets viewport and scissor.
+ *  writes those samples that lie inside the path, so adjacent paths show no seam. The depth test, if the target has
+ *  one, uses the depth of each item's plane. The engine sets viewport and scissor.
  *
  *  NOT_READY: a drawing or glyph that is shown is not resident, or gpgpPrewarm has not returned yet. INVALID_ARGUMENT:
  *  the target equals none that was given to gpgpPrewarm; more items or glyphs than the recorder was made for; an asset

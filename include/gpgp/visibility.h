@@ -89,7 +89,7 @@ typedef struct GpgpVisibilityRecorderCreateInfo {
   uint32_t maxPairs;
   /** Room for triangles on the screen of draws that are alpha-tested or see-through; at most maxTriangles; 0: none.
    *  Those beyond it count as visible and hide nothing, and the report says BUDGET_EXCEEDED. Scratch: 4 bytes each.
-   * Each takes the room of two candidates. */
+   *  Each takes the room of two candidates. */
   uint32_t maxNonOpaque;
 } GpgpVisibilityRecorderCreateInfo;
 #define GPGP_VISIBILITY_RECORDER_CREATE_INFO_INIT                                                                      \
@@ -143,13 +143,13 @@ typedef struct GpgpVisibilityDraw {
  *  inside out sets the flag for these draws. */
 #define GPGP_DRAW_CLOCKWISE 2u
 /** Triangles of the draw can be visible but hide nothing: glass, particles, both levels of detail of a cross-fade. Each
- *  is visible where nothing that hides lies in front of it. Needs maxNonOpaque. */
+ *  is visible where no triangle that hides others lies in front of it. Needs maxNonOpaque. */
 #define GPGP_DRAW_SEE_THROUGH 4u
-/** The draw is not sampled and is in no list by draw. Its triangles still count for maxTriangles. */
+/** The draw is not sampled and appears in no list by draw. Its triangles still count against maxTriangles. */
 #define GPGP_DRAW_DISABLED 8u
-/** The draw is alpha-tested by GpgpVisibilityInfo::alphaTests[i], i from 0 to 15: its triangles are there, can be
- *  visible and hide something, only where the texture's alpha reaches the cutoff. With an i out of range, the draw's
- *  triangles are skipped and counted. Needs maxNonOpaque. */
+/** The draw is alpha-tested by GpgpVisibilityInfo::alphaTests[i], i from 0 to 15: its triangles exist only where the
+ *  texture's alpha is at least the cutoff. Elsewhere they are not visible and hide nothing. With an i out of range, the
+ *  draw's triangles are skipped and counted. Needs maxNonOpaque. */
 #define GPGP_DRAW_ALPHA_TEST(i) (((i) + 1u) << 8)
 /** Layers that the draw is in, bits of a mask of 16: cameras with a layerMask sample it only if they have a bit in
  *  common. 0: every camera samples it. */
@@ -179,7 +179,8 @@ enum {
 #define GPGP_SAMPLING_CONSERVATIVE_BIT 8u
 #define GPGP_SAMPLING_NEARBY_BIT 16u
 
-/** What the conservative method asks of a triangle that touches a pixel. With no flag, every such triangle is visible.
+/** Conditions on which the conservative method takes a triangle that touches a pixel for visible. With no flag, every
+ *  such triangle is visible.
  *  IN_CIRCLE: the radius of its in-circle is at most one pixel (6.1).
  *  DEPTH: its depths in the pixel differ by less than epsilon from those of the triangle at the pixel's centre. If
  *  there is no triangle at the centre, it is not visible (6.2 to 6.4).
@@ -220,15 +221,15 @@ typedef struct GpgpViewCellInfo {
    *  towards the viewer. */
   const float* points;
   uint32_t pointCount;
-  /** Number of further view points in a square at right angles to the view; at most 1024; 0: none. They lie denser
-   *  near its border, from where most is seen. */
+  /** Number of further view points in a square perpendicular to the viewing direction; at most 1024; 0: none. They are
+   *  denser near its border, from where most is seen. */
   uint32_t walkCount;
-  float walkDistance; /**< from the middle to the sides of that square, in world units; above 0 with walkCount */
+  float walkDistance; /**< half the side of that square, in world units; above 0 with walkCount */
 } GpgpViewCellInfo;
 #define GPGP_VIEW_CELL_INFO_INIT GPGP_INIT(GpgpViewCellInfo, GPGP_STRUCTURE_VIEW_CELL_INFO)
 
-/** Makes the cameras of a view cell, in this order: the middle, the grid row by row, the square, the points. They are
- *  for one recording with several cameras, or for several recordings that accumulate.
+/** Makes the cameras of a view cell, in this order: the middle, the grid row by row, the square, the points. Use them
+ *  in one recording with several cameras, or in several recordings that accumulate.
  *  - count: in, the capacity of cameras; out, the number of all cameras. If that exceeds the capacity, the result is
  *    INCOMPLETE, and the first cameras are written.
  *  - cameras: may be NULL to ask for the count.
@@ -236,37 +237,41 @@ typedef struct GpgpViewCellInfo {
 GPGP_API GpgpResult GPGP_CALL gpgpGetViewCellCameras(const GpgpViewCellInfo* info, uint32_t* count,
                                                      GpgpCamera* cameras);
 
-/** How a viewer may walk and turn from the pose that a result is made for until it is no longer displayed. */
+/** How a viewer may move and turn between the pose for which a result is computed and the last time at which that
+ *  result is displayed. */
 typedef struct GpgpViewMotionInfo {
   GpgpStructureType sType;
   const void* pNext;
-  GpgpCamera camera;      /**< Of the pose; perspective. Of two eyes, the one halfway between them. */
+  GpgpCamera camera;      /**< The camera at the pose; perspective. For two eyes, the camera halfway between them. */
   uint32_t width, height; /**< The viewer's viewport in pixels, at most 16384 each. */
-  float velocity[3];      /**< At the pose, in world units per second along the world's axes. */
-  float acceleration;     /**< By which the velocity may change, in any direction; world units per second squared. */
-  float turnRate;         /**< Turns about the camera's up axis, to either side; radians per second at most. */
-  float tiltRate;         /**< Turns about its right axis, up or down; radians per second at most. */
+  float velocity[3];      /**< The velocity at the pose, in world units per second along the world's axes. */
+  float acceleration;     /**< How fast the velocity may change, in any direction; world units per second squared. */
+  float turnRate;         /**< Fastest turn about the camera's up axis, to either side; radians per second. */
+  float tiltRate;         /**< Fastest turn about its right axis, up or down; radians per second. */
   float earliest, latest; /**< When the result is displayed, in seconds after the pose; 0 to 10. */
   float eyeDistance;      /**< Distance of two eyes in world units; 0: one eye. */
 } GpgpViewMotionInfo;
 #define GPGP_VIEW_MOTION_INFO_INIT GPGP_INIT(GpgpViewMotionInfo, GPGP_STRUCTURE_VIEW_MOTION_INFO)
 
-/** What the cameras of a motion cover. Positions are relative to the camera of the pose, in world units to its right,
- *  up, and back towards the viewer. */
+/** Where the eyes may be, and what the cameras of gpgpGetViewMotionCameras cover. Positions are relative to the camera
+ *  of the pose, in world units to its right, up, and back towards the viewer. */
 typedef struct GpgpViewMotionCoverage {
   uint32_t cameraCount;
-  /** The viewport for the first camera, in pixels: it sees more than the viewer does, in pixels of the same size where
-   *  that takes at most twice as many. */
+  /** The viewport for the first camera, in pixels. The camera has a wider field of view than the viewer. Its pixels are
+   *  as fine as the viewer's where that takes at most twice as many. */
   uint32_t width, height;
   uint32_t cornerWidth, cornerHeight; /**< The viewport for the other cameras, for method exact. */
-  float middle[3], extent[3];         /**< The box in which the eyes stay: its middle, and from there to its sides. */
-  float turn, tilt; /**< Radians to either side; less than asked for beyond a field of view of 160 degrees. */
-  float reach;      /**< No place in the box is farther from its nearest camera. 0: one camera stands for all. */
+  float middle[3], extent[3];         /**< The box in which the eyes stay: its middle, and half its extents. */
+  /** Turns that are covered, radians to either side. They are reduced where the field of view would exceed 160 degrees.
+   */
+  float turn, tilt;
+  /** Largest distance from a place in the box to its nearest camera. 0: one camera covers the whole box. */
+  float reach;
 } GpgpViewMotionCoverage;
 
 /** Makes the cameras of a viewer in motion: in the middle of the box in which the eyes stay, then in two opposite
- *  corners, with a field of view that holds every view from there. They are for recordings that accumulate, the first
- *  one in its own viewport.
+ *  corners, with a field of view that contains every view from there. Use them in recordings that accumulate, the first
+ *  one with a viewport of its own.
  *  - count: in, the capacity of cameras; out, the number of all cameras: 1 or 3. If that exceeds the capacity, the
  *    result is INCOMPLETE, and the first cameras are written.
  *  - cameras, coverage: may be NULL.
@@ -276,8 +281,8 @@ GPGP_API GpgpResult GPGP_CALL gpgpGetViewMotionCameras(const GpgpViewMotionInfo*
 
 /* ---------------------------------------------------------------- recording */
 
-/** Projected size of a triangle. It covers the part between near and far plane that lies within three viewports to each
- *  side. */
+/** Projected size of a triangle. Only the part counts that lies between near and far plane and at most three viewports
+ *  beyond each side of the viewport. */
 typedef struct GpgpTriangleSize {
   float area;          /**< pixels */
   float width, height; /**< of its bounding box, pixels */
@@ -285,10 +290,10 @@ typedef struct GpgpTriangleSize {
 
 /** The texture of an alpha test. The engine makes its contents visible to sampling in compute shaders. */
 typedef struct GpgpAlphaTest {
-  VkImageView view;     /**< 2D; its alpha is read, so a view of a format without one maps a component to it */
+  VkImageView view;     /**< 2D; its alpha is read: a view of a format without alpha maps another component to it */
   VkSampler sampler;    /**< filters and address modes are used; anisotropy and mip bias are not */
   VkImageLayout layout; /**< current layout: SHADER_READ_ONLY_OPTIMAL, GENERAL, ... */
-  float cutoff;         /**< The triangle is there where alpha is at least this. */
+  float cutoff;         /**< The triangle exists where alpha is at least this. */
   float level;          /**< mip level that is sampled, from 0 to 32, the same at every distance */
 } GpgpAlphaTest;
 
@@ -328,9 +333,9 @@ typedef struct GpgpVisibilityInfo {
    *  becomes visible. */
   uint32_t refinements;
   /** Nearby: how far from the camera the viewer may be, in units of clip space's w; 0 or more.
-   *  Exact: also shows what a move of that length would uncover within a pixel. Meant for views of a cell whose view
-   *  points are twice as far apart. 0: nothing more.
-   *  Above 0, and for the method nearby, all cameras must be perspective. */
+   *  Exact: also marks what a move of the camera by that length would uncover within a pixel. Meant for view cells
+   *  whose view points are twice as far apart. 0: nothing more. Above 0, and for the method nearby, all cameras must be
+   *  perspective. */
   float reach;
   GpgpBuffer positions; /**< vertex positions; STORAGE usage; for 16-bit formats the size is a multiple of 4 */
   /** R32G32B32_SFLOAT, R16G16B16_SFLOAT, R16G16B16_SNORM, or one of these with A, which is not read. UNDEFINED:
@@ -338,12 +343,12 @@ typedef struct GpgpVisibilityInfo {
   VkFormat positionFormat;
   uint32_t positionOffset; /**< bytes from the start of a vertex to its position; a multiple of a component's size */
   uint32_t positionStride; /**< bytes, a multiple of a component's size; 0: three components */
-  /** Textures of alpha-tested draws (GPGP_DRAW_ALPHA_TEST), at most 16. The sampler of a device filters with its own
-   *  precision, so where alpha is near the cutoff, devices differ. */
+  /** Textures of alpha-tested draws (GPGP_DRAW_ALPHA_TEST), at most 16. Devices filter with different precision, so
+   *  results can differ between them where alpha is near the cutoff. */
   const GpgpAlphaTest* alphaTests;
   uint32_t alphaTestCount; /**< above 0: the recorder has maxNonOpaque */
   /** With alphaTests: texture coordinates by vertex, like positions; STORAGE usage; the size is a multiple of 4.
-   * Outside the range, and where not finite or from 2^100 on, they are 0. */
+   *  Coordinates that lie outside the buffer, are not finite or reach 2^100 are read as 0. */
   GpgpBuffer textureCoordinates;
   VkFormat textureCoordinateFormat; /**< R32G32_SFLOAT, R16G16_SFLOAT or R16G16_UNORM; UNDEFINED: R32G32_SFLOAT */
   uint32_t textureCoordinateOffset; /**< bytes from the start of a vertex; a multiple of a component's size */
@@ -386,9 +391,9 @@ typedef struct GpgpVisibilityInfo {
   /** Out, optional: uint32_t numbers of the visible triangles, ascending. The buffer's size is the budget. */
   GpgpBuffer visibleList;
   /** Out, optional, with history: uint32_t[4], then uint32_t numbers of triangles: those that have appeared since the
-   *  history's previous recording, ascending, and behind them those that have disappeared, ascending. [0] and [1] are
-   *  how many there are of both, whether or not the buffer holds them; [2] and [3] are 0. The buffer's size is the
-   *  budget. STORAGE usage */
+   *  history's previous recording, ascending, followed by those that have disappeared, ascending. [0] and [1] are the
+   *  two counts, whether or not the buffer holds all numbers; [2] and [3] are 0. The buffer's size is the budget.
+   *  STORAGE usage */
   GpgpBuffer changedList;
   /** Out, optional: uint32_t[4]. [0] is the number of visible triangles, whether or not the list holds them. [1] to [3]
    *  are a VkDispatchIndirectCommand with a workgroup for each 64 listed triangles, in rows of 65535:

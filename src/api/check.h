@@ -89,7 +89,7 @@ Result<T*> resolve(Call& call, Handle handle, Kind kind, const char* name, const
   return static_cast<T*>(object);
 }
 
-/// The common beginning of every record function, after the recorder was resolved.
+/// The common beginning of every recording function, after the recorder was resolved.
 inline Result<void> checkRecord(const core::Recorder& recorder, const GpgpFrame* frame) {
   if (auto ok = recorder.context.checkAlive(); !ok) return ok;
   if (auto ok = recorder.context.checkFrame(frame); !ok) return ok;

@@ -101,7 +101,7 @@ void destroyEvaluator(EvaluatorObject* object) {
 Result<void> compile(const GpgpEvaluatorCreateInfo& info, EvaluatorObject& object) {
   spawn::Graph made(std::pmr::new_delete_resource());
   const GpgpResult result = spawn::graphOf({info.sources, info.sourceCount}, info.sourceCount > 1, nullptr, made);
-  if (result == GPGP_ERROR_INVALID_STRUCT) return makeError(result, "a source is no GpgpGrammarSource");
+  if (result == GPGP_ERROR_INVALID_STRUCT) return makeError(result, "a source is not a GpgpGrammarSource");
   if (result != GPGP_SUCCESS)
     return makeError(result, "%s", "the grammar has errors; the messages of its source say where");
   auto words = spawn::serialize(made, &object.memory);

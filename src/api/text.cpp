@@ -257,9 +257,10 @@ GpgpResult GPGP_CALL gpgpSetLayoutText(GpgpLayout handle, const GpgpTextInfo* in
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "size is %zu; expected below 2^31", info->size);
     if (info->spanCount && !info->spans) return invalid("spans is NULL, but spanCount is not 0");
     if (info->direction < GPGP_TEXT_AUTO || info->direction > GPGP_TEXT_RIGHT_TO_LEFT)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "direction is %d, which is no GpgpTextDirection", info->direction);
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "direction is %d, which is not a GpgpTextDirection",
+                       info->direction);
     if (info->align < GPGP_TEXT_ALIGN_START || info->align > GPGP_TEXT_ALIGN_JUSTIFY)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "align is %d, which is no GpgpTextAlign", info->align);
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "align is %d, which is not a GpgpTextAlign", info->align);
     const struct {
       const char* name;
       float value;

@@ -9,6 +9,8 @@ sources=$2
 shift 2
 flags=(-fsyntax-only -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wundef -Wold-style-cast -Werror)
 for include in "${includes[@]}"; do flags+=(-I "$include"); done
+gpgp=${includes[0]}/gpgp
+[[ -f $gpgp/gpgp.h && -f $gpgp/gpgp.hpp ]] || { echo "no headers in $gpgp" >&2; exit 1; }
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 checked=0
@@ -30,7 +32,8 @@ for pair in "$@"; do
   for compiler in "$cc" "$cxx"; do
     command -v "$compiler" >/dev/null || { echo "no compiler $compiler" >&2; exit 1; }
   done
-  for header in core spawn spawn_builder lsystem evaluator tiles fit scatter text ui vector lottie visibility gpgp; do
+  for path in "$gpgp"/*.h; do
+    header=$(basename "$path" .h)
     echo "#include <gpgp/$header.h>" >"$scratch/$header.c"
     # Once more after all others, so that no header minds another before it.
     printf '#include <gpgp/gpgp.h>\n#include <gpgp/%s.h>\n' "$header" >>"$scratch/$header.c"
@@ -40,7 +43,8 @@ for pair in "$@"; do
   for standard in c99 c11 c17; do compile "$standard" c "$cc" "$sources/structs.c" structs; done
   for standard in c++11 c++17 c++20; do compile "$standard" c++ "$cxx" "$sources/structs.c" structs; done
   for standard in c++17 c++20; do compile "$standard" c++ "$cxx" "$sources/wrapper.cpp" gpgp/gpgp.hpp; done
-  for header in core spawn lsystem evaluator tiles fit scatter text ui vector lottie visibility; do # each alone
+  for path in "$gpgp"/*.hpp; do # each alone
+    header=$(basename "$path" .hpp)
     echo "#include <gpgp/$header.hpp>" >"$scratch/$header.cpp"
     for standard in c++17 c++20; do compile "$standard" c++ "$cxx" "$scratch/$header.cpp" "gpgp/$header.hpp"; done
   done

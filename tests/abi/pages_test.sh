@@ -41,7 +41,7 @@ for from in "$docs/../README.md" "$docs"/*.md "$docs"/*/*.md "$docs"/../integrat
   while read -r link; do
     target=$(dirname "$from")/${link%%#*}
     [[ $link != '#'* ]] || target=$from
-    [[ -e $target ]] || { echo "FAILED: $from links to $link, which is not there" >&2; failed=yes; continue; }
+    [[ -e $target ]] || { echo "FAILED: $from links to $link, which does not exist" >&2; failed=yes; continue; }
     [[ $target != *.md || $link != *'#'* ]] || anchors "$target" | grep -xF -e "${link#*#}" >/dev/null ||
       { echo "FAILED: $from links to $link, a heading that is not there" >&2; failed=yes; }
   done < <(grep -oE '\]\([^)]+\)' "$from" | sed -E 's/^\]\(|\)$//g' | grep -vE '^(https?:|mailto:)')

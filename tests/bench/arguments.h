@@ -47,7 +47,7 @@ private:
     if (end != text.c_str() && *end == 0 && value >= least && value <= most) return value;
     char range[64];
     std::snprintf(range, sizeof range, "%g to %g", least, most);
-    throw Usage(what + ": '" + text + "' is no number from " + range);
+    throw Usage(what + ": '" + text + "' is not a number from " + range);
   }
   static uint32_t whole(const std::string& what, const std::string& text, uint32_t least, uint32_t most) {
     const double value = parsed(what, text, least, most);

@@ -148,13 +148,14 @@ public:
         expect(recorder.recordPrepare(cmd, frames_.frame(), info), "record");
         if (!byPass) vk.vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries, 1);
       });
-      std::vector<uint64_t> stamps(count);
-      host::check(vk.vkGetQueryPoolResults(device_.device(), queries, 0, count, stamps.size() * 8, stamps.data(), 8,
-                                           VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+      std::vector<uint64_t> timestamps(count);
+      host::check(vk.vkGetQueryPoolResults(device_.device(), queries, 0, count, timestamps.size() * 8,
+                                           timestamps.data(), 8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
                   "vkGetQueryPoolResults");
       collect(recorder, result.report);
       std::vector<double> times;
-      for (uint32_t i = 1; i < count; ++i) times.push_back(static_cast<double>(stamps[i] - stamps[i - 1]) * period);
+      for (uint32_t i = 1; i < count; ++i)
+        times.push_back(static_cast<double>(timestamps[i] - timestamps[i - 1]) * period);
       return times;
     };
     std::vector<double> totals;

@@ -33,7 +33,7 @@ TEST(CliSpawn, CountsTerminals) {
                                                 "schedule_file",
                                                 "execution_groups",
                                                 "axioms",
-                                                "records",
+                                                "recordings",
                                                 "seed",
                                                 "terminals",
                                                 "instances",
@@ -316,8 +316,8 @@ TEST(CliSpawn, SlicesSumUp) {
   };
   for (const char* output : {"instances", "vertices"}) {
     const json one = spawn({"--output", output}), several = spawn({"--output", output, "--slice", "4"});
-    EXPECT_EQ(one["records"], 1);
-    EXPECT_EQ(several["records"], 3);
+    EXPECT_EQ(one["recordings"], 1);
+    EXPECT_EQ(several["recordings"], 3);
     for (const char* same :
          {"axioms", "terminals", "instances", "vertices", "triangles", "buckets", "rules", "key_hash", "bytes_written"})
       EXPECT_EQ(one[same], several[same]) << same;
@@ -499,7 +499,7 @@ TEST(CliSpawn, LinesOfGeoJsonBecomeAxiomsAtIntervals) {
     const size_t name = all.find("wrong.geojson:");
     return name == std::string::npos ? all : all.substr(name + 14);
   };
-  EXPECT_EQ(error("{\"type\": \"Polygon\"}").find("1:1: error: \"Polygon\" is no geometry of a"), 0u);
+  EXPECT_EQ(error("{\"type\": \"Polygon\"}").find("1:1: error: \"Polygon\" is not a geometry for a"), 0u);
   EXPECT_EQ(error("{\"type\": \"LineString\", \"coordinates\": [[1, 2]]}"),
             "1:1: error: a line needs at least two places");
   EXPECT_EQ(error("{\"type\": \"LineString\", \"coordinates\": [[1, 2], [1, 2]]}"),
@@ -558,7 +558,7 @@ TEST(CliSpawn, AxiomFilesSayWhatIsWrongAndWhere) {
             "2:9: error: the grammar does not start \"One\" with shape \"Quad\", only with: Box");
   EXPECT_EQ(error("x,z,shape\n1,2,Box\n"), "2:5: error: a shape needs the rule that starts with it");
   EXPECT_EQ(error("x,x\n"), "1:3: error: two columns are named \"x\"");
-  EXPECT_EQ(error("x,w\n").substr(0, 29), "1:3: error: \"w\" is no column;");
+  EXPECT_EQ(error("x,w\n").substr(0, 33), "1:3: error: \"w\" is not a column;");
   EXPECT_EQ(error("[{\"position\": [1, 2, 3]},\n\n {\"rotation\": 3}]").substr(0, 36),
             "3:2: error: an axiom needs a value f");
   EXPECT_EQ(error("[\n{\"position\": [1, 2]}]"), "2:1: error: position takes three numbers, [x, y, z]");

@@ -54,16 +54,16 @@ uint32_t firstInk(const host::Picture& picture) {
 
 TEST_F(CliText, OneObjectAndAPicture) {
   const json drawn = draw("Hello fi", {"--size", "20", "--repeat", "3", "--validate"});
-  EXPECT_EQ(keys(drawn),
-            (std::set<std::string>{"command", "ok", "device", "status", "glyphs", "lines", "width", "height",
-                                   "truncated", "shape_ms", "gpu_ms_median", "records", "missing", "broken", "image"}));
+  EXPECT_EQ(keys(drawn), (std::set<std::string>{"command", "ok", "device", "status", "glyphs", "lines", "width",
+                                                "height", "truncated", "shape_ms", "gpu_ms_median", "recordings",
+                                                "missing", "broken", "image"}));
   EXPECT_EQ(drawn["status"], "GPGP_SUCCESS");
   EXPECT_EQ(drawn["glyphs"], 7) << "fi is a ligature";
   EXPECT_EQ(drawn["lines"], 1);
   EXPECT_EQ(drawn["truncated"], false);
   EXPECT_EQ(drawn["missing"], json::array());
   EXPECT_EQ(drawn["broken"], json::array());
-  EXPECT_EQ(drawn["records"], 1);
+  EXPECT_EQ(drawn["recordings"], 1);
   EXPECT_GT(drawn["shape_ms"], 0);
   EXPECT_GT(drawn["gpu_ms_median"], 0);
   const host::Picture shown = seen();
@@ -435,15 +435,15 @@ TEST_F(CliText, AVeryLongTextTakesSeveralRecords) {
   const std::vector<std::string> as = {"--size", "26", "--width", "3250", "--background", "white"};
   const json drawn = draw(std::string(25000, 'm'), as);
   EXPECT_EQ(drawn["glyphs"], 25000);
-  EXPECT_GT(drawn["records"], 1);
+  EXPECT_GT(drawn["recordings"], 1);
   const host::Picture whole = seen();
   const json few = draw(std::string(1280, 'm'), as); // ten lines of 128, in one record
-  EXPECT_EQ(few["records"], 1);
+  EXPECT_EQ(few["recordings"], 1);
   const host::Picture part = seen();
   ASSERT_EQ(part.width, whole.width);
   const auto lines = drawn["lines"].get<uint32_t>();
   EXPECT_EQ(lines, (25000 + 127) / 128);
-  // Each line looks as the first does, as far as parts of pixels agree: as much ink, also where records meet.
+  // Each line looks as the first does, as far as parts of pixels agree: as much ink, also where recordings meet.
   const auto ink = [](const host::Picture& page, double first, double end) {
     double sum = 0;
     for (auto y = static_cast<uint32_t>(first); y < static_cast<uint32_t>(end); ++y)

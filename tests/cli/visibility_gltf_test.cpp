@@ -275,7 +275,7 @@ TEST(CliVisibilityGltf, ContainersAreCheckedChunkByChunk) {
   EXPECT_EQ(seen(more.path())["visible"], 2);
   EXPECT_NE(failure(container(0, 0, "JSON", 4)).find("its header says"), std::string::npos);
   EXPECT_NE(failure(container(0, 4, "JSON", 0)).find("chunk 1 says that it has 76 bytes"), std::string::npos);
-  EXPECT_NE(failure(container(0, 2, "JSON", 0)).find("chunk 1 has 74 bytes, which is no multiple of 4"),
+  EXPECT_NE(failure(container(0, 2, "JSON", 0)).find("chunk 1 has 74 bytes, which is not a multiple of 4"),
             std::string::npos);
   EXPECT_NE(failure(container(0xf0000000, 0, "JSON", 0)).find("chunk 0"), std::string::npos);
   EXPECT_NE(failure(container(0, 0, "NOSJ", 0)).find("first chunk"), std::string::npos);

@@ -203,7 +203,7 @@ TEST(CliVisibilityModels, BrokenGltfIsNamed) {
        },
        "too many or too few numbers"},
       {[](json& gltf) { primitive(gltf)["material"] = 0; }, "no material"},
-      {[](json& gltf) { primitive(gltf).erase("indices"); }, "4 corners, which is no multiple of 3"},
+      {[](json& gltf) { primitive(gltf).erase("indices"); }, "4 corners, which is not a multiple of 3"},
       {[](json& gltf) { gltf["bufferViews"][0]["byteLength"] = 47; }, "beyond buffer view 0"},
       {[](json& gltf) { gltf["accessors"][1]["count"] = 5; }, "beyond buffer view 1"},
       {[](json& gltf) { gltf["accessors"][1]["count"] = 4000000000u; }, "beyond buffer view 1"},

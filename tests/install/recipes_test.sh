@@ -62,7 +62,7 @@ for name in $(grep -oE '"GPGP_[A-Z]+_[A-Z]+"' "$recipe" | tr -d '"' | sort -u) $
   grep -qx "$name" <<<"$options" || fail "the recipe sets $name, which CMakeLists.txt does not have"
 done
 for name in $(sed -nE 's/.*for pattern in \((.*)\):/\1/p' "$recipe" | tr -d '",*'); do
-  [[ -e $source/$name ]] || fail "the recipe exports $name, which is not there"
+  [[ -e $source/$name ]] || fail "the recipe exports $name, which does not exist"
 done
 if command -v conan >/dev/null; then
   [[ $(CONAN_HOME=$scratch/conan conan inspect "$recipe" | sed -nE 's/^version: //p') == "$version" ]] || fail "conan reads another version"

@@ -30,7 +30,7 @@ done
 "$cmake" --build "$scratch"
 "$scratch/consumer"
 if [[ " $* " == *" spawn "* ]]; then set -- "$@" spawn_builder lsystem tiles fit scatter; fi # services in several headers
-if [[ " $* " == *" vector "* ]]; then set -- "$@" ui lottie; fi
+if [[ " $* " == *" vector "* ]]; then set -- "$@" ui svg lottie; fi
 if [[ " $* " == *" visibility "* ]]; then set -- "$@" atlas; fi
 symbols=("$tests/../abi/symbols_test.sh" "$nm" "$source/include" "$tests/../abi")
 "${symbols[@]}" run-time "$scratch/gpgp/src/libgpgp.a" core "$@"

@@ -186,9 +186,9 @@ TEST(GrammarBuilder, ReportsEveryErrorByTheNameOfItsPlace) {
   EXPECT_EQ(
       messagesOf(g),
       (Messages{
-          "error: gpgpAddTerminal: 'a-b' is no name; expected letters, digits and _",
+          "error: gpgpAddTerminal: 'a-b' is not a name; expected letters, digits and _",
           "error: gpgpAddTerminal: names has no name",
-          "error: gpgpAddRule: '2 words' is no name; expected letters, digits and _",
+          "error: gpgpAddRule: '2 words' is not a name; expected letters, digits and _",
           "error: gpgpAddRule: the name is NULL",
           "error: gpgpAddExpression: there is no kind of expression 50",
           "error: gpgpAddVariable: 'X' has a meaning of its own; expected another name",
@@ -212,7 +212,7 @@ TEST(GrammarBuilder, ReportsEveryErrorByTheNameOfItsPlace) {
           "error: terminal 'Odd', its kind: a terminal's kind is 0 (triangles) or 1 (an instanced mesh)",
           "error: terminal 'Odd', its index: a terminal's index is a whole number from 0",
           "error: rule 'One', Extrude, value 1: this number is not finite",
-          "error: rule 'Two', Extrude, Discard: this operator is already used elsewhere; what is shared must be a rule",
+          "error: rule 'Two', Extrude, Discard: this operator is already used elsewhere; to share it, make it a rule",
           "error: rule 'Far': there is no operator 99 in this builder",
           "error: rule 'None': expected a name or an operator, found neither",
           "error: rule 'Null', Rotate: values is NULL, valueCount is 3",
@@ -289,7 +289,7 @@ TEST(GrammarBuilder, DepthAndSizeAreBounded) {
   GrammarBuilder circle = empty();
   circle.axiom(GPGP_SHAPE_BOX, "A").rule("A", circle.translate(1, 0, 0, GrammarOperator{1}));
   EXPECT_EQ(messagesOf(circle), Messages{"error: rule 'A', Translate, Translate: this operator is already used "
-                                         "elsewhere; what is shared must be a rule"});
+                                         "elsewhere; to share it, make it a rule"});
   GrammarBuilder wide = empty();
   wide.axiom(GPGP_SHAPE_BOX, "A").terminal("T", 1, 0);
   GrammarValue sum = wide.shapeSize(Axis::x);

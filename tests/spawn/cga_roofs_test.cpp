@@ -154,7 +154,7 @@ TEST(CgaRoofs, WhatDoesNotFitIsNamed) {
   EXPECT_EQ(why("Lot --> roofHip(byHeight, 2) comp(f) { top: A }"),
             "40 the selector 'top' of a roof that may be steep or not");
   EXPECT_EQ(why("Lot --> roofHip(30) comp(f) { all: extrude(0.2) }"),
-            "36 'extrude' of a roof's face that is no rectangle");
+            "36 'extrude' of a roof face that is not a rectangle");
   EXPECT_EQ(why("Lot --> roofGable(30) comp(f) { all: s('1, '1, 0.2) A }"),
             "0 a roof's face whose scope has a height, but no solid,");
   EXPECT_EQ(why("Lot --> roofHip(30) split(y) { 1: A }"), "21 split of a roof");

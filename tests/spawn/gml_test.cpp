@@ -215,8 +215,8 @@ TEST(StackLanguage, AllErrorsHaveTheirPlaceAndSuggestions) {
   const std::vector<std::string> expected = {
       "2:16: error: there is no operator or definition 'translte'; did you mean 'translate'?",
       "3:14: error: there is no operator or definition 'heigth'; did you mean 'hight'?",
-      "4:8: error: 'a' is no number; expected (x, y) or (x, y, z) with numbers; 'vector2' and 'vector3' make vectors "
-      "of what is on the stack",
+      "4:8: error: 'a' is not a number; expected (x, y) or (x, y, z) with numbers; 'vector2' and 'vector3' make "
+      "vectors from the stack",
       "5:9: error: add takes two numbers or two vectors of the same size, found a number and an array",
       "6:1: error: this string has no '\"' at its end; expected one in the same line",
       "7:3: error: this '}' has no '{'"};

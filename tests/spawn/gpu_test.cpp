@@ -656,7 +656,7 @@ TEST_F(SpawnTest, DamagedKernelsAreRefused) {
     return result == GPGP_ERROR_INVALID_DATA ? text : "accepted";
   };
   const std::string begin = "gpgpCreateGrammar: kernel 0 of the baked grammar: ";
-  EXPECT_EQ(refused([&](auto& w) { w[graph] ^= 1; }), begin + "what follows is no kernel");
+  EXPECT_EQ(refused([&](auto& w) { w[graph] ^= 1; }), begin + "the data that follows is not a kernel");
   const std::string older = refused([&](auto& w) { w[graph + 1] = 1; });
   EXPECT_EQ(older.rfind(begin + "it was made in format 1; this library reads format ", 0), 0u) << older;
   EXPECT_NE(older.find(": bake the grammar again"), std::string::npos) << older;

@@ -268,7 +268,7 @@ TEST(LanguageSuggestions, NameWhatIsMeant) {
     return messages.empty() ? std::string() : messages[0];
   };
   const std::string operators = "3:5: error: there is no operator ",
-                    functions = " is no function; expected Exp, Min, Max, Floor, Noise, Rand, ShapePos, ShapeSize, "
+                    functions = " is not a function; expected Exp, Min, Max, Floor, Noise, Rand, ShapePos, ShapeSize, "
                                 "ShapeRotation, ShapeNormal, ShapeSeed, "
                                 "ShapeCustomAttribute, CameraDistance, ScreenSize or OutOfView; did you mean ";
   EXPECT_EQ(only("A = translate(1,0,0) T;"), operators + "'translate'; did you mean 'Translate'?");
@@ -343,7 +343,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Case{"A = B;", "3:5: error: there is no rule or terminal 'B'"},
         Case{"A = Foo(1) T;", "3:5: error: there is no operator 'Foo'"},
-        Case{"A = T(1);", "3:5: error: 'T' is no operator; expected no '(' after it"},
+        Case{"A = T(1);", "3:5: error: 'T' is not an operator; expected no '(' after it"},
         Case{"A = T T;", "3:7: error: expected ';' at the end of the rule, found 'T'"},
         Case{"A = Translate;", "3:5: error: expected '(' after the operator Translate"},
         Case{"A = Translate(1,2) T;", "3:5: error: Translate takes 3 arguments, found 2"},
@@ -362,10 +362,11 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"A = Translate(ShapeSize(),0,0) T;", "3:15: error: ShapeSize takes an axis, found 0 arguments"},
         Case{"A = Translate(ShapeRotation(X),0,0) T;",
              "3:15: error: ShapeRotation takes an axis and a component, found 1 argument"},
-        Case{"A = Translate(Sin(1),0,0) T;", "3:15: error: 'Sin' is no function; expected Exp, Min, Max, Floor, Noise, "
-                                             "Rand, ShapePos, ShapeSize, ShapeRotation, ShapeNormal, "
-                                             "ShapeSeed, ShapeCustomAttribute, CameraDistance, ScreenSize or "
-                                             "OutOfView; did you mean 'Min'?"},
+        Case{"A = Translate(Sin(1),0,0) T;",
+             "3:15: error: 'Sin' is not a function; expected Exp, Min, Max, Floor, Noise, "
+             "Rand, ShapePos, ShapeSize, ShapeRotation, ShapeNormal, "
+             "ShapeSeed, ShapeCustomAttribute, CameraDistance, ScreenSize or "
+             "OutOfView; did you mean 'Min'?"},
         Case{"A = Translate(1 +,0,0) T;", "3:18: error: expected a value, found ','"},
         Case{"A = Translate(1,0,0 T;", "3:21: error: expected ',' or ')' after an argument, found 'T'"},
         Case{"A = Collider() T;", "3:5: error: Collider takes 1 argument, found 0"},

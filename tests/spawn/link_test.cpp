@@ -197,9 +197,10 @@ TEST(Link, ErrorsHaveThePlaceInTheirFile) {
   EXPECT_EQ(linkMessages({{"a.pga", kHouse}, {"b/a.other", kTree}}),
             Messages{"b/a.other: error: 'a' is also the name of a.pga; expected another file name, or an alias: "
                      "linked grammars are told apart by them"});
-  EXPECT_EQ(linkMessages({{"folder/", kHouse}}),
-            Messages{"folder/: error: this grammar has no name; expected one, as of a file: what it is linked with "
-                     "calls it so"});
+  EXPECT_EQ(
+      linkMessages({{"folder/", kHouse}}),
+      Messages{
+          "folder/: error: this grammar has no name; expected one, such as a file name: linked grammars refer to it"});
   std::string many = "axiom Box A; A = T0;";
   for (int i = 0; i < 600; ++i) many.append("\nterminal T").append(std::to_string(i)).append(" (1,0);");
   EXPECT_EQ(linkMessages({{"a.pga", many}, {"b.pga", many}}),
@@ -219,7 +220,7 @@ TEST(Link, AliasesTellFilesOfOneNameApart) {
   for (const char* wrong : {"two words", "42", "a.b", "é"})
     EXPECT_EQ(linkMessages({{"a/x.pga", kHouse}, {"b/x.pga", kTree, {}, wrong}}),
               Messages{std::string("b/x.pga: error: the alias '") + wrong +
-                       "' is no name; expected letters, digits and _, not digits alone"});
+                       "' is not a name; expected letters, digits and _, not only digits"});
 }
 
 TEST(Link, BakedGrammarsLinkAsTheirTextDoes) { // and in all tests of linked text above
@@ -269,7 +270,7 @@ TEST(Link, BakedGrammarsLinkAsTheirTextDoes) { // and in all tests of linked tex
   EXPECT_NE(housed(whole.substr(0, whole.size() - 4)).at(0).find("of the baked grammar: it was cut"),
             std::string::npos);
   EXPECT_NE(housed(flipped).at(0).find("its checksum is wrong"), std::string::npos);
-  EXPECT_NE(housed(whole + "tail").at(0).find("what follows is no kernel"), std::string::npos);
+  EXPECT_NE(housed(whole + "tail").at(0).find("the data that follows is not a kernel"), std::string::npos);
 }
 
 TEST(Link, NeedsSources) {

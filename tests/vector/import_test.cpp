@@ -543,10 +543,11 @@ TEST(SvgImport, NamespacesCountNotPrefixes) {
     EXPECT_EQ(i.messages, Texts{}) << text;
   }
   for (const std::string other : {"xlink:href='#r' xmlns:xlink='foo'", "xl:href='#r'"})
-    EXPECT_EQ(page(use + other + "/>").messages, (Texts{"E line 2: <use> refers to '', which is not there"})) << other;
+    EXPECT_EQ(page(use + other + "/>").messages, (Texts{"E line 2: <use> refers to '', which does not exist"}))
+        << other;
   const std::string inside = "<s:style>rect {fill:red}</s:style>\n<s:rect width='a' height='9'/><rect/>";
   const Import prefixed = import("<s:svg xmlns:s" + svg + ">" + inside + "<s:" + r + "/></s:svg>");
-  EXPECT_EQ(prefixed.messages, (Texts{"E line 2: <rect> has width 'a', which is no length"}));
+  EXPECT_EQ(prefixed.messages, (Texts{"E line 2: <rect> has width 'a', which is not a length"}));
   ASSERT_EQ(prefixed.drawing.paths.size(), 1u);
   EXPECT_EQ(prefixed.drawing.paths[0].color[0], 1);
   EXPECT_EQ(import("<s:svg>" + inside + "<s:" + r + "/></s:svg>").drawing.paths.size(), 1u);
@@ -921,9 +922,9 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<text x='1'>a</text>", "W line 2: <text> is not supported"},
       {"\n<image href='a.png'/>", "W line 3: <image> is not supported"},
       {"<rect width='9' height='9' clip-path='url(#c)'/>",
-       "W line 2: clip-path 'url(#c)' is no clipPath of this file: <rect> is drawn without it"},
+       "W line 2: clip-path 'url(#c)' is not a clipPath of this file: <rect> is drawn without it"},
       {"<rect width='9' height='9' filter='url(#c)'/>",
-       "W line 2: filter '#c' is not there: <rect> is drawn without it"},
+       "W line 2: filter '#c' does not exist: <rect> is drawn without it"},
       {"<linearGradient id='g'/>\n<rect width='9' height='9' fill='url(#g)'/>",
        "W line 3: <rect> fill refers to a gradient without stops; it is not painted"},
       {"<linearGradient id='g'><stop/></linearGradient>\n<path d='M0 0h9' stroke='url(#g) red'/>",
@@ -933,7 +934,7 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<path d='M0 0h9v9' stroke='red' stroke-linejoin='arcs'/>",
        "W line 2: stroke-linejoin 'arcs' is not supported: <path> has miters instead"},
       {"<linearGradient id='g' x1='a'><stop/></linearGradient><rect width='9' height='9' fill='url(#g)'/>",
-       "E line 2: <linearGradient> has x1 'a', which is no length"},
+       "E line 2: <linearGradient> has x1 'a', which is not a length"},
       {"<pattern id='p'/><rect width='9' height='9' fill='url(#p) red'/>",
        "W line 2: <rect> fill refers to a pattern without extent; its fallback is used"},
       {"<clipPath id='c' clip-path='url(#c)'/><rect width='9' height='9' clip-path='url(#c)'/>",
@@ -941,15 +942,15 @@ TEST(SvgImport, MessagesNameElementAndLine) {
       {"<clipPath id='c'>\n<g><path d='M0 0h9v9'/></g></clipPath><rect width='9' height='9' clip-path='url(#c)'/>",
        "W line 3: <g> shows nothing inside a <clipPath>"},
       {"<rect width='9' height='9' clip-path='circle(4)'/>",
-       "W line 2: clip-path 'circle(4)' is no clipPath of this file: <rect> is drawn without it"},
+       "W line 2: clip-path 'circle(4)' is not a clipPath of this file: <rect> is drawn without it"},
       {"<svg width='2e7' height='9'><rect width='9' height='1e6'/></svg>",
        "W line 2: <svg> is not clipped to its viewport; its content reaches beyond"},
       {"<clipPath id='c'><text>a</text></clipPath><rect width='9' height='9' clip-path='url(#c)'/>",
        "W line 2: <text> is not supported"},
       {"<g id='a'><use href='#a'/></g>", "E line 2: <use> of '#a' contains itself; not drawn"},
-      {"<use href='#no'/>", "E line 2: <use> refers to '#no', which is not there"},
+      {"<use href='#no'/>", "E line 2: <use> refers to '#no', which does not exist"},
       {"<circle r='-1'/>", "E line 2: <circle> has a negative r"},
-      {"<rect width='9' height='nan'/>", "E line 2: <rect> has height 'nan', which is no length"},
+      {"<rect width='9' height='nan'/>", "E line 2: <rect> has height 'nan', which is not a length"},
       {"<rect width='1e30' height='9'/>", "E line 2: <rect> reaches beyond 10000000 pixels; not drawn"},
       {"<rect width='9' height='9' transform='turn(3)'/>",
        "E line 2: <rect> has an error in its transform, which is ignored"},
@@ -959,7 +960,7 @@ TEST(SvgImport, MessagesNameElementAndLine) {
        "W line 3: zoom is not supported: <rect> is drawn without it"},
       {"<rect width='9' height='9' style='transform:scale(1);transform-origin:top top'/>",
        "W line 2: <rect> has transform-origin 'top top', which is not valid; ignored"},
-      {"<rect height='9' style='width:wide'/>", "E line 2: <rect> has width 'wide', which is no length"},
+      {"<rect height='9' style='width:wide'/>", "E line 2: <rect> has width 'wide', which is not a length"},
       {"<path style='d:path(\"M0 0 x\")'/>",
        "E line 2: <path> has an error in its path data at character 6; drawn up to there"},
       {"<rect height='9' style='width:calc(sin(1) * 2px)'/>",
@@ -1259,7 +1260,7 @@ TEST(SvgImport, HostileInputIsBounded) {
   std::string deep, copies = "<g id='c0'><rect width='1' height='1'/></g>";
   for (int i = 0; i < 100000; ++i) deep += "<g>";
   for (int i = 0; i < 100000; ++i) deep += "</g>";
-  EXPECT_EQ(page(deep).messages, (Texts{"E line 2: elements are nested deeper than 200; what is inside is not drawn"}));
+  EXPECT_EQ(page(deep).messages, (Texts{"E line 2: elements are nested deeper than 200; its contents are not drawn"}));
   for (int i = 1; i < 40; ++i) {
     const std::string last = "<use href='#c" + std::to_string(i - 1) + "'/>";
     copies += "<g id='c" + std::to_string(i) + "'>" + last + last + last + "</g>";

@@ -550,7 +550,8 @@ TEST_F(LayersTest, WhatIsWrongIsNamed) {
   refused([](Scene&, GpgpLayer& l) { l.mask = 1; }, "groups[0].layer.mask is 1: no later group");
   refused([](Scene&, GpgpLayer& l) { l.mask = 9; }, "groups[0].layer.mask is 9: no later group");
   refused([&](Scene&, GpgpLayer& l) { first(l).kind = 77; }, "groups[0].layer.filter[0]: kind is unknown");
-  refused([&](Scene&, GpgpLayer& l) { first(l).input = GPGP_FILTER_FIRST_STEP; }, "filter[0]: an input is no earlier");
+  refused([&](Scene&, GpgpLayer& l) { first(l).input = GPGP_FILTER_FIRST_STEP; },
+          "filter[0]: an input is not an earlier");
   refused([&](Scene&, GpgpLayer& l) { first(l).region[0] = NAN; }, "filter[0]: region is not a box");
   refused([&](Scene&, GpgpLayer& l) { first(l).values[0] = INFINITY; }, "filter[0]: values hold a number");
   refused([&](Scene&, GpgpLayer& l) { first(l).group = 1; }, "filter[0].group is 1: no later group");
@@ -640,12 +641,12 @@ TEST(BakedLayers, HoldNothingThatIsNotDrawn) {
   EXPECT_EQ(errorOf([](Plan&) {}), "");
   // Steps that no check would see.
   const std::string stray = "baked drawing: a step is in no filter";
-  const std::string limits = "baked drawing: its layers are too deep in each other, too many, or not in it";
+  const std::string limits = "baked drawing: its layers are nested too deep, too many, or not in it";
   EXPECT_EQ(errorOf([](Plan& p) { p.steps.push_back(p.steps[0]); }), stray);
   EXPECT_EQ(errorOf([](Plan& p) { p.steps.emplace_back().values[0] = NAN; }), stray);
   EXPECT_EQ(errorOf([](Plan& p) { --p.nodes[0].stepCount; }), stray);
   EXPECT_EQ(errorOf([](Plan& p) { p.nodes.push_back(p.nodes[0]); }),
-            "baked drawing: a layer refers to what is not there"); // two filters with the same steps
+            "baked drawing: a layer refers to something that does not exist"); // two filters with the same steps
   // Sequences and layers that nothing shows; of runs alone they are counted as well.
   EXPECT_EQ(errorOf([](Plan& p) { p.sequences.push_back(p.sequences[0]); }), limits);
   EXPECT_EQ(errorOf([](Plan& p) {

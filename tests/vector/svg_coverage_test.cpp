@@ -109,9 +109,9 @@ const Property kProperties[] = {
      as("<linearGradient id='g' style='color-interpolation:linearRGB'><stop stop-color='#fff'/><stop offset='1'/>"
         "</linearGradient><path d='M49 0H51V100H49Z' fill='url(#g)'/>")},
     {"color-interpolation", "linearRGB", "<path d='M0 0h9v9' fill-opacity='.5' ", "/>",
-     named("color-interpolation of what is painted, linearRGB, is not supported")},
+     named("color-interpolation linearRGB of a painted element is not supported")},
     {"clip-path", "url(#c)", kClip, "/>", as("<rect x='20' y='20' width='30' height='60' fill='#0a0'/>")},
-    {"clip-path", "circle(20px)", kRect, "/>", named("is no clipPath of this file")},
+    {"clip-path", "circle(20px)", kRect, "/>", named("is not a clipPath of this file")},
     {"clip-rule", "evenodd", "<clipPath id='c'><path d='M0 0H100V100H0ZM30 30H70V70H30Z' ",
      "/></clipPath><rect width='100' height='100' clip-path='url(#c)'/>",
      as("<path d='M0 0H100V100H0ZM30 30V70H70V30Z'/>")},
@@ -146,9 +146,9 @@ const Property kProperties[] = {
     {"marker-end", "url(#m)", kMarked, "/>", as("<path d='M70 70H90V90H70Z' fill='#a00'/>")},
     // Named.
     {"clip", "rect(0 1px 1px 0)", "<svg width='50' height='50' ", "/>", named("clip is not supported")},
-    {"filter", "url(#f)", kRect, "/>", named("filter '#f' is not there")},
+    {"filter", "url(#f)", kRect, "/>", named("filter '#f' does not exist")},
     {"filter", "url(a.svg#f)", kRect, "/>", named("filter 'a.svg#f' of another file is not supported")},
-    {"mask", "url(#m)", kRect, "/>", named("mask 'url(#m)' is not there")},
+    {"mask", "url(#m)", kRect, "/>", named("mask 'url(#m)' does not exist")},
     {"mask", "url(a.png)", kRect, "/>", named("mask 'url(a.png)' is not supported")},
     {"mask-image", "url(#m)", kRect, "/>", named("mask-image is not supported"), false},
     {"mask-border", "url(a.png) 30", kRect, "/>", named("mask-border is not supported"), false},

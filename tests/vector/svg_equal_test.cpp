@@ -100,12 +100,12 @@ TEST(SvgEqual, MarkersArePlacedAtVertices) {
 TEST(SvgEqual, WrongMarkersAreNamed) {
   const auto said = [](const std::string& text) { return page(text).placed; };
   EXPECT_EQ(said("<path d='M0 0h9v9' marker-end='url(#m)'/>"),
-            Texts{"test.svg:2:1: warning: <path> has the marker 'url(#m)', which is not there; it is not drawn"});
+            Texts{"test.svg:2:1: warning: <path> has the marker 'url(#m)', which does not exist; it is not drawn"});
   EXPECT_EQ(said("<g id='m'/><path d='M0 0h9v9' marker-end='url(#m)'/>"),
             Texts{"test.svg:2:12: warning: <path> has the marker 'url(#m)', which is a <g>; it is not drawn"});
   EXPECT_EQ(
       said("<path d='M0 0h9v9' marker-end='url(a.svg#m)'/>"),
-      Texts{"test.svg:2:1: warning: <path> has the marker 'url(a.svg#m)', which is no <marker> of this file; it is "
+      Texts{"test.svg:2:1: warning: <path> has the marker 'url(a.svg#m)', which is not a <marker> of this file; it is "
             "not drawn"});
   EXPECT_EQ(said("<marker id='m'><path d='M0 0h2v2' marker-mid='url(#m)'/></marker><path d='M0 0h9v9' "
                  "marker-end='url(#m)'/>"),
@@ -327,12 +327,13 @@ TEST(SvgEqual, TextIsOutlines) {
     EXPECT_LE(worst(picture(given), picture(reference)), kSame);
   }
   const auto said = [](const std::string& text) { return written(text).placed; };
-  EXPECT_EQ(said("<text><textPath href='#p'>a</textPath></text>"),
-            Texts{"test.svg:2:7: warning: <textPath> refers to '#p', which is no shape of this file; it is not drawn"});
+  EXPECT_EQ(
+      said("<text><textPath href='#p'>a</textPath></text>"),
+      Texts{"test.svg:2:7: warning: <textPath> refers to '#p', which is not a shape of this file; it is not drawn"});
   EXPECT_EQ(said("<text>a<tref href='#a'/></text>"),
-            Texts{"test.svg:2:8: warning: <tref> refers to what is not there"});
+            Texts{"test.svg:2:8: warning: <tref> refers to an element that does not exist"});
   EXPECT_EQ(said("<text><tspan><textPath href='#p'>a</textPath></tspan></text>").size(), 1u);
-  EXPECT_EQ(said("<text x='1 a'>ab</text>"), Texts{"test.svg:2:10: error: <text> has x '1 a', which is no length"});
+  EXPECT_EQ(said("<text x='1 a'>ab</text>"), Texts{"test.svg:2:10: error: <text> has x '1 a', which is not a length"});
 }
 
 TEST(SvgEqual, UnicodeBidiIsMarksOfDirection) {

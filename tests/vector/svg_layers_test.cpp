@@ -242,12 +242,12 @@ TEST(SvgLayers, WhatIsNotThereDoesNotCount) {
   const struct {
     const char *before, *attribute, *message;
   } cases[] = {
-      {"", "mask='url(#m)'", "mask 'url(#m)' is not there: <rect> is drawn without it"},
-      {"<g id='m'/>", "mask='url(#m)'", "mask 'url(#m)' is no mask: <rect> is drawn without it"},
+      {"", "mask='url(#m)'", "mask 'url(#m)' does not exist: <rect> is drawn without it"},
+      {"<g id='m'/>", "mask='url(#m)'", "mask 'url(#m)' is not a mask: <rect> is drawn without it"},
       {"", "mask='url(a.svg#m)'", "mask 'url(a.svg#m)' is not supported: <rect> is drawn without it"},
-      {"", "filter='url(#f)'", "filter '#f' is not there: <rect> is drawn without it"},
-      {"<g id='f'/>", "filter='url(#f)'", "filter '#f' is no filter: <rect> is drawn without it"},
-      {"", "filter='blur(2px) url(#f)'", "filter '#f' is not there: <rect> is drawn without it"},
+      {"", "filter='url(#f)'", "filter '#f' does not exist: <rect> is drawn without it"},
+      {"<g id='f'/>", "filter='url(#f)'", "filter '#f' is not a filter: <rect> is drawn without it"},
+      {"", "filter='blur(2px) url(#f)'", "filter '#f' does not exist: <rect> is drawn without it"},
       {"", "filter='url(a.svg#f)'", "filter 'a.svg#f' of another file is not supported: <rect> is drawn without it"},
       {"<mask id='m' maskContentUnits='objectBoundingBox' maskUnits='userSpaceOnUse'><path d='M0 0h1v1'/></mask>"
        "<path d='M5 20H35' stroke='red' mask='url(#m)'/>",

@@ -118,11 +118,12 @@ TEST(SvgPaint, GradientsTakeWhatTheirTemplatesHave) {
   // Nothing comes from what is no gradient, and that is said at the reference.
   const Import none =
       page("<rect id='t' x1='1' gradientTransform='rotate(90)'>" + stops + "</rect>\n" + linear("href='#t'"));
-  EXPECT_EQ(none.placed, (Texts{"test.svg:3:30: warning: <linearGradient> refers to '#t', which is no gradient but a "
-                                "<rect>; ignored"}));
+  EXPECT_EQ(none.placed,
+            (Texts{"test.svg:3:30: warning: <linearGradient> refers to '#t', which is not a gradient but a "
+                   "<rect>; ignored"}));
   EXPECT_LE(worst(picture(none), picture(page(linear("")))), kSame);
   EXPECT_EQ(page("\n" + linear("href='#no'")).placed,
-            Texts{"test.svg:3:30: warning: <linearGradient> refers to '#no', which is not there; ignored"});
+            Texts{"test.svg:3:30: warning: <linearGradient> refers to '#no', which does not exist; ignored"});
   EXPECT_EQ(page("\n" + linear("href=''")).messages.size(), 1u);
   std::string chain;
   for (int i = 0; i < 40; ++i)

@@ -166,7 +166,7 @@ TEST(SvgSheets, WhatIsNotReadIsNamedWithItsPlace) {
        "test.svg:1:73: warning: " + before + "%2e%2e/c.css' leads out of the drawing's folder, where nothing is read"},
       {"<style>@import '..\\\\c.css';</style>",
        "test.svg:1:73: warning: " + before + "..\\c.css' leads out of the drawing's folder, where nothing is read"},
-      {"<style>@import '#a';</style>", "test.svg:1:73: warning: " + before + "#a' is no file"},
+      {"<style>@import '#a';</style>", "test.svg:1:73: warning: " + before + "#a' is not a file"},
       {"<style>@import 'no.css';</style>", "test.svg:1:73: warning: " + before + "no.css' cannot be read"},
       {"<style>@import 'self.css';</style>", "other.css:2:2: warning: " + before + "self.css' imports itself"},
   };
@@ -177,14 +177,14 @@ TEST(SvgSheets, WhatIsNotReadIsNamedWithItsPlace) {
   EXPECT_EQ(sheeted("", "<style>@import 'late.css';</style>", files).placed,
             Texts{"late.css:1:14: warning: style rule @import does not stand before all others; ignored"});
   EXPECT_EQ(sheeted("", "<style>@import foo;</style>", files).placed,
-            Texts{"test.svg:1:73: warning: style rule @import has 'foo', which is no address; ignored"});
+            Texts{"test.svg:1:73: warning: style rule @import has 'foo', which is not an address; ignored"});
   EXPECT_EQ(
       sheeted("", "<style>@import 'a.css' layer(b);</style>", files).placed,
       Texts{"test.svg:1:73: warning: style rule @import has the condition 'layer(b)', which is not supported: its "
             "style sheet does not count"});
   EXPECT_EQ(sheeted("", "<style>@media (min-width:9px) {.a{fill:red}}</style>", files).placed,
             Texts{"test.svg:1:73: warning: style rule @media has the condition '(min-width:9px)', which is not "
-                  "supported: what is in it does not count"});
+                  "supported: its contents are ignored"});
   EXPECT_EQ(sheeted("", "<style>@supports (fill:red) {.a{fill:red}}</style>", files).placed,
             Texts{"test.svg:1:73: warning: style rule @supports is not supported"});
   EXPECT_EQ(sheeted("\n <?xml-stylesheet href='a.xsl' type='text/xsl'?>", "", files).placed,

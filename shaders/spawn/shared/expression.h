@@ -49,7 +49,7 @@ GPGP_FN float attributeOf(Shape s, uint code) {
   return code == kCodeSeed ? unitFloat(s.seed) : s.custom;
 }
 
-GPGP_FN float truthOf(bool value) { return value ? 1.0f : 0.0f; }
+GPGP_FN float fromBool(bool value) { return value ? 1.0f : 0.0f; }
 
 /// a op b for the codes of two operands. drawn: kCodeRandom's number.
 GPGP_FN float combine(uint code, float a, float b, float drawn) {

@@ -1,6 +1,6 @@
 // What operators and the codes of expressions are, a row each. Whoever needs a column says with two macros what a row
-// becomes: graph_format.h makes constants of it, chain.h the cases of the interpreter, src/spawn/graph/operators.h what
-// the host looks up. LAST is the last row of its relation, as shaders tell relations by number; else it is as ROW.
+// becomes: graph_format.h makes constants of it, chain.h the cases of the interpreter, src/spawn/graph/operator_info.h
+// what the host looks up. LAST is the last row of its relation, as shaders tell relations by number; else it is as ROW.
 #ifndef GPGP_SHADERS_SPAWN_OPERATOR_TABLE_H
 #define GPGP_SHADERS_SPAWN_OPERATOR_TABLE_H
 
@@ -63,14 +63,14 @@
   ROW(Subtract, 3u, "-", 5, GPGP_EXPRESSION_SUBTRACT, subtract(a, b))                                                  \
   ROW(Multiply, 4u, "*", 6, GPGP_EXPRESSION_MULTIPLY, multiply(a, b))                                                  \
   ROW(Divide, 5u, "/", 6, GPGP_EXPRESSION_DIVIDE, divide(a, b))                                                        \
-  ROW(Equal, 6u, "==", 3, GPGP_EXPRESSION_EQUAL, truthOf(nearlyEqual(a, b)))                                           \
-  ROW(NotEqual, 7u, "!=", 3, GPGP_EXPRESSION_NOT_EQUAL, truthOf(!nearlyEqual(a, b)))                                   \
-  ROW(Less, 8u, "<", 4, GPGP_EXPRESSION_LESS, truthOf(a < b))                                                          \
-  ROW(Greater, 9u, ">", 4, GPGP_EXPRESSION_GREATER, truthOf(a > b))                                                    \
-  ROW(LessEqual, 10u, "<=", 4, GPGP_EXPRESSION_LESS_EQUAL, truthOf(a <= b))                                            \
-  ROW(GreaterEqual, 11u, ">=", 4, GPGP_EXPRESSION_GREATER_EQUAL, truthOf(a >= b))                                      \
-  ROW(And, 12u, "&&", 2, GPGP_EXPRESSION_AND, truthOf(a != 0.0f && b != 0.0f))                                         \
-  ROW(Or, 13u, "||", 1, GPGP_EXPRESSION_OR, truthOf(a != 0.0f || b != 0.0f))                                           \
+  ROW(Equal, 6u, "==", 3, GPGP_EXPRESSION_EQUAL, fromBool(nearlyEqual(a, b)))                                          \
+  ROW(NotEqual, 7u, "!=", 3, GPGP_EXPRESSION_NOT_EQUAL, fromBool(!nearlyEqual(a, b)))                                  \
+  ROW(Less, 8u, "<", 4, GPGP_EXPRESSION_LESS, fromBool(a < b))                                                         \
+  ROW(Greater, 9u, ">", 4, GPGP_EXPRESSION_GREATER, fromBool(a > b))                                                   \
+  ROW(LessEqual, 10u, "<=", 4, GPGP_EXPRESSION_LESS_EQUAL, fromBool(a <= b))                                           \
+  ROW(GreaterEqual, 11u, ">=", 4, GPGP_EXPRESSION_GREATER_EQUAL, fromBool(a >= b))                                     \
+  ROW(And, 12u, "&&", 2, GPGP_EXPRESSION_AND, fromBool(a != 0.0f && b != 0.0f))                                        \
+  ROW(Or, 13u, "||", 1, GPGP_EXPRESSION_OR, fromBool(a != 0.0f || b != 0.0f))                                          \
   ROW(Least, 14u, "Min", 0, GPGP_EXPRESSION_MIN, min(a, b))                                                            \
   ROW(Most, 15u, "Max", 0, GPGP_EXPRESSION_MAX, max(a, b))                                                             \
   ROW(Floor, 16u, "Floor", 0, GPGP_EXPRESSION_FLOOR, settle(floor(divide(a, b))))                                      \

@@ -63,7 +63,7 @@ std::string typeOf(const BakeOptions& options, const std::string& file, std::str
   if (!options.type.empty()) return options.type;
   if (file == kStandard) {
     const std::string type = typeOfBytes(bytes);
-    if (type.empty()) throw Usage("standard input is no drawing, font or grammar; --type says what it is");
+    if (type.empty()) throw Usage("standard input is not a drawing, font or grammar; state its type with --type");
     return type;
   }
   std::string ending = std::filesystem::path(file).extension().string();
@@ -74,7 +74,7 @@ std::string typeOf(const BakeOptions& options, const std::string& file, std::str
 #endif
   if (ending == ".svg" || ending == ".svgz") return "drawing";
   if (ending == ".ttf" || ending == ".otf" || ending == ".ttc" || ending == ".otc") return "font";
-  throw Usage(file + ": neither .pga nor .gml nor .cga nor .svg nor a font; --type says what it is");
+  throw Usage(file + ": neither .pga nor .gml nor .cga nor .svg nor a font; state its type with --type");
 }
 
 /// Of the baked file.
@@ -166,7 +166,7 @@ Outcome bakeLinked([[maybe_unused]] const BakeOptions& options) {
       throw Usage("standard input has no name to be linked by; NAME=- gives it one");
     std::string text = readInput(file.path);
     if (!text.starts_with("gppg") && typeOf(options, file.path, text) != "grammar")
-      throw Usage(file.path + " is no grammar; --link is for grammars");
+      throw Usage(file.path + " is not a grammar; --link is for grammars");
     grammars.push_back({file, std::move(text)});
   }
   const std::string bytes = bakeGrammars(options, grammars, true, options.in);
@@ -241,24 +241,24 @@ Work addBake(CLI::App& app) {
       ->required();
   command
       ->add_option("--type", options->type,
-                   "What the inputs are, whatever their names (standard input: as its bytes say)")
+                   "Type of the inputs, whatever their names (standard input: detected from its bytes)")
       ->check(CLI::IsMember({"grammar", "drawing", "font"}));
   command
       ->add_option("--set", options->set, "Override a `var` of the grammars, with --link GRAMMAR.NAME; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->add_flag("--link", options->link,
-                    "The grammars, baked ones too, become one, in one file: names of a.pga are a.Name, and its start "
-                    "is a. Files of the same name take another one as NAME=FILE");
+                    "Link the grammars, baked ones too, to one file: names of a.pga become a.Name, and its start is a. "
+                    "NAME=FILE renames a file");
   CLI::Option* noKernel = command->add_flag("!--no-kernel", options->kernel,
                                             "Grammars run on the interpreter: smaller files, slower derivation");
 #ifdef GPGP_CLI_SPAWN
   command
-      ->add_option(
-          "--schedule", options->schedules,
-          "Whose kernels stand behind grammars, as `gpgp spawn` takes it. default, sgl, rw, rules, heuristic or "
-          "groups as `gpgp graph` prints them: for all devices, so one of these at most; tuned, or what `gpgp "
-          "tune -o` made: for the devices and numbers of axioms that they were tuned for. May be repeated")
+      ->add_option("--schedule", options->schedules,
+                   "Schedule of the kernels that are baked with grammars, as for `gpgp spawn`. default, sgl, rw, "
+                   "rules, heuristic or "
+                   "groups as `gpgp graph` prints them: for all devices, so at most one of these; tuned, or a file of "
+                   "`gpgp tune -o`: for the devices and numbers of axioms that they were tuned for. May be repeated")
       ->type_name("NAME|FILE")
       ->allow_extra_args(false)
       ->excludes(noKernel);
@@ -276,7 +276,7 @@ Work addBake(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--method", options->method,
-                   "Who draws the drawings: canvases (flattened), draws inside a render pass (in-pass), or both")
+                   "What the drawings are for: canvases (flattened), draws inside a render pass (in-pass), or both")
       ->check(CLI::IsMember({"flattened", "in-pass", "both"}))
       ->capture_default_str();
 #endif
@@ -291,8 +291,8 @@ Work addBake(CLI::App& app) {
   command->footer(R"(
 Examples:
   gpgp bake city.pga -o city.gpgp
-  gpgp bake city.pga -o city.gpgp --schedule tuned --schedule default   tuned where it was, and else by default
-  gpgp bake house.pga tree.pga lamp.pga --link -o street.gpgp      one grammar: one record derives all of them
+  gpgp bake city.pga -o city.gpgp --schedule tuned --schedule default   tuned kernels, and for other devices default ones
+  gpgp bake house.pga tree.pga lamp.pga --link -o street.gpgp      one grammar: one recording derives all of them
   gpgp bake old=a/house.pga new=b/house.pga --link -o houses.gpgp  their starts are old and new
   gpgp bake DejaVuSans.ttf -o latin.gpgpf --ranges U+0020-007E,U+00A0-00FF --characters "€–…"
   gpgp bake NotoNaskhArabic-Regular.ttf -o arabic.gpgpf --characters-file strings.txt --outline 0.1

@@ -53,7 +53,8 @@ void addRanges(const std::string& list, std::vector<GpgpCharacterRange>& ranges)
         number(part.substr(0, dash), range.first) &&
         (dash == std::string::npos ? (range.last = range.first, true) : number(part.substr(dash + 1), range.last)) &&
         range.first <= range.last;
-    if (!good) throw Usage("--ranges '" + part + "' is no range of characters; write for example U+0020-007E,U+20AC");
+    if (!good)
+      throw Usage("--ranges '" + part + "' is not a range of characters; write for example U+0020-007E,U+20AC");
     ranges.push_back(range);
   }
 }
@@ -111,8 +112,9 @@ std::vector<uint32_t> chosenGlyphs(const Font& font, const Messages& messages, c
 
 void addBakeFontOptions(CLI::App& command, BakeFontOptions& options) {
   command
-      .add_option("--characters", options.characters,
-                  "Of fonts: bake what a text of these characters needs; may be repeated (default: all glyphs)")
+      .add_option(
+          "--characters", options.characters,
+          "Of fonts: bake all glyphs that a text of these characters needs; may be repeated (default: all glyphs)")
       ->type_name("TEXT")
       ->allow_extra_args(false);
   command
@@ -124,7 +126,9 @@ void addBakeFontOptions(CLI::App& command, BakeFontOptions& options) {
       .add_option("--ranges", options.ranges, "The same for ranges of characters, U+0020-007E,U+20AC; may be repeated")
       ->type_name("LIST")
       ->allow_extra_args(false);
-  command.add_option("--face", options.face, "Of fonts: which of a collection")->type_name("N")->capture_default_str();
+  command.add_option("--face", options.face, "Of fonts: index of the face in a collection")
+      ->type_name("N")
+      ->capture_default_str();
   command.add_option("--axes", options.axes, "Of variable fonts: values of axes, wght=650,wdth=80")->type_name("LIST");
   command
       .add_option("--outline", options.outline,

@@ -109,8 +109,8 @@ Work addGraph(CLI::App& app) {
   addVariables(*command, options->set);
   command
       ->add_option("--schedule", options->schedule,
-                   "Execution groups: sgl (as few as possible; with colliders, as a bounded search finds), rw (one a "
-                   "node), rules (one a rule), heuristic, or a "
+                   "Execution groups: sgl (as few as possible; with colliders, as few as a bounded search finds), rw "
+                   "(one per node), rules (one per rule), heuristic, or a "
                    "file with groups")
       ->type_name("NAME|FILE");
   addGroupSize(*command, options->heuristics);

@@ -133,7 +133,7 @@ Outcome info(const CommonOptions& options) {
 } // namespace
 
 Work addInfo(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("info", "What this machine offers and gpgp would use of it");
+  CLI::App* command = app.add_subcommand("info", "What this machine offers, and what gpgp would use");
   command->footer("\nExamples:\n  gpgp info\n  gpgp info --device 1\n  gpgp info --json | jq .features");
   return info;
 }

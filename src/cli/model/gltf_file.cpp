@@ -47,7 +47,7 @@ Container chunksOf(const Bytes& bytes) {
     if (length - at < 8) fail(name + " has no whole header");
     const size_t size = word(at);
     const uint32_t type = word(at + 4);
-    if (size % 4) fail(name + " has " + std::to_string(size) + " bytes, which is no multiple of 4");
+    if (size % 4) fail(name + " has " + std::to_string(size) + " bytes, which is not a multiple of 4");
     if (size > length - at - 8)
       fail(name + " says that it has " + std::to_string(size) + " bytes, of which the file holds " +
            std::to_string(length - at - 8));
@@ -112,7 +112,7 @@ Bytes bytesOf(const Json& buffer, size_t index, Container& container, const std:
     if (uri.rfind("data:", 0) == 0)
       bytes = decoded(uri, length);
     else if (uri.find("://") != std::string::npos || uri.size() > kLongestPath)
-      fail("lies at '" + excerpt(uri) + "', which is no file beside the model");
+      fail("lies at '" + excerpt(uri) + "', which is not a file beside the model");
     else
       bytes = host::readFile(folder / pathOf(uri));
   } else { // of a compression, which may leave it empty
@@ -132,7 +132,7 @@ Json parsed(const std::string& text) {
       return true;
     });
   } catch (const Json::exception& problem) {
-    fail("is no glTF: " + excerpt(problem.what()));
+    fail("is not a glTF file: " + excerpt(problem.what()));
   }
 }
 
@@ -194,7 +194,7 @@ Bytes imageBytes(const tinygltf::Model& gltf, int index, const std::filesystem::
   if (!image.uri.empty()) {
     if (image.uri.find("://") != std::string::npos || image.uri.size() > kLongestPath)
       fail("image " + std::to_string(index) + " lies at '" + excerpt(image.uri) +
-           "', which is no file beside the model");
+           "', which is not a file beside the model");
     return host::readFile(folder / pathOf(image.uri));
   }
   if (image.bufferView < 0 || static_cast<size_t>(image.bufferView) >= gltf.bufferViews.size())
@@ -223,7 +223,7 @@ tinygltf::Model readGltf(const std::filesystem::path& file, bool (*isRead)(const
           fail("buffer " + std::to_string(buffers.size()) + " " + problem.what());
         }
   } catch (const Json::exception& problem) {
-    fail("is no glTF: " + excerpt(problem.what()));
+    fail("is not a glTF file: " + excerpt(problem.what()));
   }
   json.erase("buffers");
   std::vector<tinygltf::Image> images;
@@ -245,7 +245,7 @@ tinygltf::Model readGltf(const std::filesystem::path& file, bool (*isRead)(const
                                                  static_cast<unsigned int>(text.size()), std::string());
   gltf.images = std::move(images);
   for (Bytes& bytes : buffers) gltf.buffers.emplace_back().data = std::move(bytes);
-  if (!loaded) fail(error.empty() ? "is no glTF 2 file" : excerpt(error));
+  if (!loaded) fail(error.empty() ? "is not a glTF 2 file" : excerpt(error));
   return gltf;
 }
 

@@ -128,7 +128,7 @@ Alpha alphaOf(const tinygltf::Primitive& primitive, const tinygltf::Material& ma
   if (cutoff <= 0) return alpha;
   if (factor < cutoff) {
     ++remarks[masks ? "primitives have less alpha than their alpha test's cutoff (alphaMode MASK) and were left out"
-                    : "primitives are transparent altogether (alphaMode BLEND) and were left out"];
+                    : "primitives are fully transparent (alphaMode BLEND) and were left out"];
     alpha.any = false;
   } else if (base.baseColorTexture.index >= 0) {
     if (base.baseColorTexture.extensions.contains("KHR_texture_transform"))
@@ -147,8 +147,9 @@ uint32_t AlphaTests::flagsOf(int texture, float cutoff, Remarks& remarks) {
   if (static_cast<size_t>(texture) >= gltf_.textures.size()) fail("a material names no texture");
   const tinygltf::Texture& from = gltf_.textures[static_cast<size_t>(texture)];
   if (model_.alphaTests.size() == kMostTests) {
-    ++remarks["pairs of a texture and a cutoff are beyond the 16 alpha tests that are read; what they cut was taken as "
-              "opaque"];
+    ++remarks
+        ["pairs of a texture and a cutoff are beyond the 16 alpha tests that are read; their triangles were taken as "
+         "opaque"];
     return 0;
   }
   int source = from.source;
@@ -156,7 +157,7 @@ uint32_t AlphaTests::flagsOf(int texture, float cutoff, Remarks& remarks) {
     if (webp->second.Get("source").IsInt()) source = webp->second.Get("source").GetNumberAsInt();
   const host::Picture picture = source < 0 ? host::Picture() : host::decodePicture(imageBytes(gltf_, source, folder_));
   if (picture.rgba.empty()) {
-    ++remarks["textures of alpha tests are no PNG, JPEG or WebP that can be read; what they cut was taken as opaque"];
+    ++remarks["textures of alpha tests are not readable as PNG, JPEG or WebP; their triangles were taken as opaque"];
     return 0;
   }
   AlphaTexture made;
@@ -210,7 +211,7 @@ Part addPrimitive(Model& model, const tinygltf::Model& gltf, const tinygltf::Pri
     ++remarks["primitives with a skin name no joints; neither these nor their node's transform move them"];
   const std::vector<uint32_t> corners = indicesOf(gltf, primitive.indices, positions.size() / 3);
   if (isList && corners.size() % 3)
-    fail("a list of triangles has " + std::to_string(corners.size()) + " corners, which is no multiple of 3");
+    fail("a list of triangles has " + std::to_string(corners.size()) + " corners, which is not a multiple of 3");
   const size_t triangles = isList ? corners.size() / 3 : std::max<size_t>(corners.size(), 2) - 2;
   if ((model.positions.size() + positions.size()) / 3 > kMostVertices ||
       model.indices.size() + triangles * 3 > UINT32_MAX)

@@ -144,7 +144,7 @@ private:
   void readNode(size_t index, const glm::dmat4& world) {
     const tinygltf::Node& node = gltf_.nodes[index];
     if (static_cast<size_t>(node.mesh) >= gltf_.meshes.size())
-      fail("node " + std::to_string(index) + " names mesh " + std::to_string(node.mesh) + ", which is not there");
+      fail("node " + std::to_string(index) + " names mesh " + std::to_string(node.mesh) + ", which does not exist");
     const tinygltf::Mesh& mesh = gltf_.meshes[static_cast<size_t>(node.mesh)];
     Pose pose;
     pose.skinned = node.skin >= 0;

@@ -17,16 +17,16 @@ void addCommonOptions(CLI::App& command, CommonOptions& options) {
       "software device)");
   command.add_flag("--json", options.json, "Print one JSON object instead of text");
   command.add_flag("--validate", options.validate,
-                   "Run under the Khronos validation layer; any message of it makes the command fail");
+                   "Run under the Khronos validation layer; any message from it makes the command fail");
 }
 
 void addDumpOptions(CLI::App& command, CommonOptions& options) {
-  auto* pass =
-      command.add_option("--dump-pass", options.dumpPass,
-                         "For debugging: write the scratch buffers that a pass uses, as they are behind it, to "
-                         "PASS.BUFFER.bin; of several passes with a name PASS#2 is the second. "
-                         "shaders/*/shared/layout.h and the CPU reference say how to read them");
-  command.add_option("--dump-folder", options.dumpFolder, "Where to (default: the current folder)")->needs(pass);
+  auto* pass = command.add_option("--dump-pass", options.dumpPass,
+                                  "For debugging: write the scratch buffers that a pass uses, as they are after it, to "
+                                  "PASS.BUFFER.bin. If several passes share a name, PASS#2 is the second. "
+                                  "shaders/*/shared/layout.h and the CPU reference define their layout");
+  command.add_option("--dump-folder", options.dumpFolder, "Folder for these files (default: the current one)")
+      ->needs(pass);
 }
 
 Size parseSize(const std::string& text) {
@@ -39,7 +39,7 @@ Size parseSize(const std::string& text) {
         text[0] != '-' && *second != '-')
       return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
   }
-  throw CLI::ValidationError("\"" + text + "\" is no size; write for example 1280x720 (1 to 16384 each)");
+  throw CLI::ValidationError("\"" + text + "\" is not a size; write for example 1280x720 (1 to 16384 each)");
 }
 
 std::array<float, 3> parseTriple(const std::string& text) {

@@ -9,7 +9,8 @@ std::array<float, 4> parseCssColor(const std::string& option, const std::string&
   if (text.empty()) return {};
   vector::svg::Color c;
   if (!vector::svg::parseColor(text, c))
-    throw Usage(option + " '" + text + "' is no CSS colour; write for example white, '#fff' or 'rgb(255 0 0 / 50%)'");
+    throw Usage(option + " '" + text +
+                "' is not a CSS colour; write for example white, '#fff' or 'rgb(255 0 0 / 50%)'");
   return {static_cast<float>(c.r), static_cast<float>(c.g), static_cast<float>(c.b), static_cast<float>(c.a)};
 }
 

@@ -53,8 +53,8 @@ public:
   void keepBusy() { busy_.pass(); }
   /// Runs record `repeat` times, a frame each, and waits for it; measures every one by two timestamps around all that
   /// it records, and before each of them, if there are several, another one by a timestamp after each pass. record is
-  /// given the info's common part, and returns what the record function returned. The report is the last run's. A GPU
-  /// is kept busy for a while before, and between recordings: idle ones lower their clocks within milliseconds.
+  /// given the info's common part, and returns what the recording function returned. The report is the last run's. A
+  /// GPU is kept busy for a while before, and between recordings: idle ones lower their clocks within milliseconds.
   using Record = std::function<GpgpResult(VkCommandBuffer, const GpgpFrame&, const GpgpRecordingInfo&)>;
   template <class RecorderType>
   auto measure(RecorderType& recorder, const char* label, uint32_t repeat, const Record& record) {
@@ -66,7 +66,7 @@ public:
         found = report->base.tag == repeat - 1;
       }
     });
-    if (!found) throw Failure("the last record gave no report");
+    if (!found) throw Failure("the last recording gave no report");
     return result;
   }
   /// The same for a recorder that makes no reports.

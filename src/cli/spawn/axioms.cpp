@@ -71,9 +71,10 @@ std::vector<std::string> columnsOf(const std::vector<Cell>& header, spawn::Diagn
   const size_t before = errors.errorCount();
   for (const Cell& cell : header) {
     if (!isColumn(cell.text))
-      errors.error(cell.place, quoted(cell.text) +
-                                   " is no column; the first line names some of x, y, z, rotation, qx, qy, qz, qw, m00 "
-                                   "to m23, size_x, size_y, size_z, seed, rule, shape, attribute");
+      errors.error(cell.place,
+                   quoted(cell.text) +
+                       " is not a column; the first line names some of x, y, z, rotation, qx, qy, qz, qw, m00 "
+                       "to m23, size_x, size_y, size_z, seed, rule, shape, attribute");
     else if (std::find(columns.begin(), columns.end(), cell.text) != columns.end())
       errors.error(cell.place, "two columns are named " + quoted(cell.text));
     columns.push_back(cell.text);
@@ -260,8 +261,9 @@ private:
     }
     const bool isPoint = type == "Point", many = type == "MultiPoint" || type == "MultiLineString";
     if (!isPoint && !many && type != "LineString")
-      return errors_.error(place_, quoted(type) + " is no geometry of axioms; those are points and lines (polygons: of "
-                                                  ".cga files)");
+      return errors_.error(place_, quoted(type) +
+                                       " is not a geometry for axioms; those are points and lines (polygons: of "
+                                       ".cga files)");
     if (list == geometry.end() || !list->is_array()) return errors_.error(place_, "a " + type + " needs coordinates");
     if (type == "MultiLineString")
       for (const Json& one : *list) line(one, properties);

@@ -185,7 +185,7 @@ private:
     glm::dvec2 scale(1), origin(0);
     if (options_.geographic) {
       if (std::fabs(low.x) > 360 || std::fabs(high.x) > 360 || std::fabs(low.y) > 90 || std::fabs(high.y) > 90)
-        throw Failure(options_.axiomFile + ": these are no longitudes and latitudes; leave --geographic out");
+        throw Failure(options_.axiomFile + ": these are not longitudes and latitudes; leave --geographic out");
       origin = glm::dvec2(low + high) * 0.5;
       scale.y = 111319.490793; // metres of a degree
       scale.x = scale.y * std::cos(origin.y * 0.017453292519943295);

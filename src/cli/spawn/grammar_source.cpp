@@ -83,7 +83,7 @@ void expectGraphLanguage(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (ending == ".lsys")
-    throw Usage(file + ": an L-system has no operator graph, so that it is not baked, tuned or printed; `gpgp spawn " +
+    throw Usage(file + ": an L-system has no operator graph, so it cannot be baked, tuned or printed; `gpgp spawn " +
                 file + "` derives it, and gpgpCompileLsystem() makes the data that an engine loads");
 }
 
@@ -153,7 +153,7 @@ GrammarFile::GrammarFile(const std::string& argument) : path(argument) {
   alias = argument.substr(0, equals);
   path = argument.substr(equals + 1);
   if (alias.empty() || spawn::linkedName(alias) != alias)
-    throw Usage(argument + ": \"" + alias + "\" is no name for " + path +
+    throw Usage(argument + ": \"" + alias + "\" is not a name for " + path +
                 "; expected letters, digits and _, not digits alone");
 }
 
@@ -168,15 +168,13 @@ void addGrammars(CLI::App& command, std::vector<std::string>& arguments) {
   command
       .add_option("GRAMMAR", arguments,
                   "PGA-shape grammar text (.pga), a stack program (.gml), a baked grammar, or a .cga file; several are "
-                  "linked to one grammar, "
-                  "by their file "
-                  "names or as NAME=FILE says")
+                  "linked to one grammar, named after their files or by NAME=FILE")
       ->required()
       ->check(CLI::Validator(exists, "[NAME=]FILE"));
 }
 
 void addVariables(CLI::App& command, std::vector<std::string>& set) {
-  command.add_option("--set", set, "Override a `var` of the grammar, of several GRAMMAR.NAME; may be repeated")
+  command.add_option("--set", set, "Override a `var` of the grammar; of linked grammars GRAMMAR.NAME; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
 }

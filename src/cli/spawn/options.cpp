@@ -11,13 +11,13 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
   CLI::Option* axioms =
       command
           .add_option("--axioms", options.axioms,
-                      "Start shapes, on a square grid; those of linked grammars in turn (default: one of each)")
+                      "Start shapes, on a square grid; linked grammars take turns (default: one of each)")
           ->check(CLI::Range(1u, 10000000u));
   command
       .add_option(
           "--axiom-file", options.axiomFile,
           "Start shapes from a file, CSV or JSON: position, rotation about Y or quaternion, or a whole transform; "
-          "size, seed, rule, shape, attribute. Or GeoJSON: points, and lines with some at intervals")
+          "size, seed, rule, shape, attribute. Or GeoJSON: points, and lines with start shapes at intervals")
       ->check(CLI::ExistingFile)
       ->excludes(axioms);
   command
@@ -80,23 +80,23 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
       ->check(CLI::Range(1u, 100000u))
       ->capture_default_str();
   command
-      .add_option(
-          "--schedule", options.schedule,
-          "How the derivation runs. sgl: as few execution groups as possible (with colliders: as a bounded search "
-          "finds); rw: one an operator; rules: one a "
-          "rule; heuristic: the thesis's H1 to H3; default: few groups, but for a SubDiv behind another "
-          "(execution_groups: of the partition with dynamic edges there); interpreter: "
-          "no kernel is compiled; tuned: the fastest that `gpgp tune` found for this grammar, device and about as "
-          "many axioms, tuning first where it is not stored yet (in $XDG_CACHE_HOME/gpgp or ~/.cache/gpgp); "
-          "FILE: a baked grammar with kernels, or groups as `gpgp graph` prints them")
+      .add_option("--schedule", options.schedule,
+                  "How the derivation runs. sgl: as few execution groups as possible (with colliders: as few as a "
+                  "bounded search finds); rw: one per operator; rules: one per rule; heuristic: the thesis's H1 to H3; "
+                  "default: few groups, except where one SubDiv follows another "
+                  "(execution_groups: of the partition with dynamic edges there); interpreter: "
+                  "no kernel is compiled; tuned: the fastest that `gpgp tune` found for this grammar, this device and "
+                  "a similar number of axioms; it is tuned first if nothing is stored yet (in $XDG_CACHE_HOME/gpgp or "
+                  "~/.cache/gpgp); "
+                  "FILE: a baked grammar with kernels, or groups as `gpgp graph` prints them")
       ->type_name("NAME|FILE")
       ->capture_default_str();
   addQueues(command, options.queues, "");
   addGroupSize(command, options.heuristics);
   command
       .add_option("--matching", options.matching,
-                  "Execution groups that differ in parameters only share one piece of code; not for baked kernels, nor "
-                  "for the default, which is no partition")
+                  "Execution groups that differ only in parameters share their code; not for baked kernels, nor for "
+                  "the default, which is not a partition")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
   command
@@ -105,11 +105,11 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
                   "float x 3, normal snorm8 x 4, uv float x 2, terminal and axiom id uint32; and 32-bit indices")
       ->check(CLI::IsMember({"instances", "vertices"}))
       ->capture_default_str();
-  command.add_flag("--sorted", options.sorted, "Instances lie by bucket, with a draw command each");
+  command.add_flag("--sorted", options.sorted, "Sort the instances by bucket, with a draw command for each bucket");
   CLI::Option* image = command.add_option("--image", options.image, "Write a picture of the result")
                            ->check(pngFile())
                            ->type_name("FILE.png");
-  command.add_option("--yaw", options.yaw, "That picture's view: degrees around the scene")
+  command.add_option("--yaw", options.yaw, "Camera of that picture: degrees around the scene")
       ->needs(image)
       ->check(within(-36000.0, 36000.0))
       ->capture_default_str();
@@ -117,41 +117,42 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
       ->needs(image)
       ->check(within(-89.0, 89.0))
       ->capture_default_str();
-  command.add_option("--zoom", options.zoom, "Times closer to the middle than all of the scene")
+  command.add_option("--zoom", options.zoom, "How many times closer than a view of the whole scene")
       ->needs(image)
       ->check(within(0.01, 1000.0))
       ->capture_default_str();
   CLI::Option* camera =
       command
           .add_option("--camera", options.camera,
-                      "A camera at X,Y,Z that looks at X,Y,Z, which CameraDistance(), ScreenSize() and OutOfView() "
-                      "ask; its picture has the size of --image-size, and --image shows what it sees")
+                      "A camera at the first X,Y,Z that looks at the second, for CameraDistance(), ScreenSize() and "
+                      "OutOfView(); --image shows its view, which has the size of --image-size")
           ->delimiter(',')
           ->type_name("X,Y,Z,X,Y,Z")
           ->each([o = &options](const std::string&) { o->hasCamera = true; });
-  command.add_option("--fov", options.fov, "Its field of view from top to bottom, degrees")
+  command.add_option("--fov", options.fov, "The camera's vertical field of view, degrees")
       ->needs(camera)
       ->check(within(1, 170))
       ->capture_default_str();
   command
       .add_option("--changed", options.changed,
-                  "Also derive PERCENT of the axioms anew, with other seeds, in the instances of all; measured, and "
-                  "checked that all others stay as they are")
+                  "Also derive PERCENT of the axioms again with other seeds, in place; reports the time, and checks "
+                  "that all other instances are unchanged")
       ->type_name("PERCENT")
       ->check(within(1e-6, 100));
-  CLI::Option* out =
-      command
-          .add_option("--out", options.out,
-                      "Write what was derived: a node and mesh for each terminal, with normals, uv and its colour")
-          ->check(glbFile())
-          ->type_name("FILE.glb");
+  CLI::Option* out = command
+                         .add_option("--out", options.out,
+                                     "Write the result as glTF: a node and mesh for each terminal, with normals, "
+                                     "texture coordinates and its colour")
+                         ->check(glbFile())
+                         ->type_name("FILE.glb");
   command
-      .add_flag("--out-nodes", options.nodes,
-                "There, a node for each instance that one can place, below its terminal's; they share meshes")
+      .add_flag(
+          "--out-nodes", options.nodes,
+          "In that file, a node for each instance that a node can place, below its terminal's; nodes share meshes")
       ->needs(out);
   command
       .add_flag("--instanced", options.instanced,
-                "There, one node for all instances of a terminal and shape, by EXT_mesh_gpu_instancing")
+                "In that file, one node for all instances of a terminal and shape, by EXT_mesh_gpu_instancing")
       ->needs(out)
       ->excludes("--out-nodes");
   CLI::Option* imageSize =
@@ -161,7 +162,7 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
   });
   command
       .add_option("--max-instances", options.maxInstances,
-                  "Budget: instances or vertices written (0: as many as there are, as far as the device binds them)")
+                  "Budget: instances or vertices written (0: as many as there are, up to what the device can bind)")
       ->check(CLI::Range(0u, 1u << 30))
       ->capture_default_str();
   command.add_option("--max-shapes", options.maxShapes,
@@ -169,15 +170,14 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
   command.add_option("--max-colliders", options.maxColliders,
                      "Budget: shapes that Collider registers (0: as many as there are)");
   command.add_option("--slice", options.slice,
-                     "Axioms of one record at most (0: as many as the device binds); budgets are those of a record");
+                     "Most axioms of one recording (0: as many as the device binds); budgets are those of a recording");
   command.add_flag("--string", options.string, "Of an L-system: print the last string");
   command
-      .add_option("--max-modules", options.maxModules,
-                  "Of an L-system: budget of modules of a string (0: as many as there are, as far as the device binds "
-                  "them)")
+      .add_option(
+          "--max-modules", options.maxModules,
+          "Of an L-system: budget of modules of a string (0: as many as there are, up to what the device can bind)")
       ->check(CLI::Range(0u, 1u << 23));
-  command.add_option("--max-depth", options.maxDepth,
-                     "Budget: how deep rules nest in themselves (0: the library's default)");
+  command.add_option("--max-depth", options.maxDepth, "Budget: recursion depth of rules (0: the library's default)");
   command.add_option("--max-faces", options.maxFaces, "Of a .cga file: budget of faces of a shape (0: 250 000)");
   command.add_option("--max-vertices", options.maxVertices,
                      "Of a .cga file: budget of vertices of a shape (0: 1 000 000)");
@@ -204,9 +204,9 @@ Examples:
   gpgp spawn house.cga --axiom-size 12,1,18 --attr floors=3 --image house.png --out house.glb
   gpgp spawn house.cga --axiom-file lots.geojson        polygons, with holes; their properties set attributes
 
-An axiom stands on its position. The CPU evaluator derives the same on one thread: cpu_reference_ms, and a check of what
-the device did. Errors in the grammar and in axiom files are printed with their place. What exceeds a budget is counted
-and reported with the size that would have fitted; it is never silently lost.)");
+An axiom stands on its position. The CPU evaluator derives the same on one thread, to check the device's result;
+cpu_reference_ms is its time. Errors in the grammar and in axiom files are printed with their place. What exceeds a
+budget is counted and reported with the size that would have fitted; it is never silently lost.)");
 }
 
 } // namespace gpgp::cli

@@ -87,7 +87,7 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
       throw Usage("--schedule takes sgl, rw, rules, heuristic, tuned, interpreter, default or a file; there is no \"" +
                   name + "\"");
     if (queues == spawn::Queues::groups) schedule = withQueues(std::move(*schedule));
-    if (schedule->roots.empty()) matchesNothing(options, "the default schedule, which is no partition");
+    if (schedule->roots.empty()) matchesNothing(options, "the default schedule, which is not a partition");
     const auto code = compileOrSay(grammar.graph, *schedule, std::span(&target, 1), options.matching == "on",
                                    joined(options.grammars));
     if (code[0].empty()) return {{}, "interpreter", {}, schedule->groups};
@@ -197,11 +197,11 @@ void add(GpgpSpawnReport& sum, const GpgpSpawnReport& record) {
 /// Axioms in parts of equal size, a recording each.
 struct Slices {
   const std::vector<GpgpAxiom>& axioms;
-  size_t records = 1, size = 0;
+  size_t recordings = 1, size = 0;
 
   Slices(const std::vector<GpgpAxiom>& all, size_t most) : axioms(all) {
-    records = (all.size() + most - 1) / most;
-    size = (all.size() + records - 1) / records;
+    recordings = (all.size() + most - 1) / most;
+    size = (all.size() + recordings - 1) / recordings;
   }
   std::vector<GpgpAxiom> of(size_t record) const {
     const size_t first = std::min(record * size, axioms.size()), end = std::min(first + size, axioms.size());
@@ -214,8 +214,8 @@ Slices slicesFor(const SpawnOptions& options, const std::vector<GpgpAxiom>& axio
   uint64_t most = Deriver::mostAxioms(session);
   if (options.slice) most = std::min<uint64_t>(most, options.slice);
   if (axioms.size() > most && graph.phases)
-    throw Usage(counted(axioms.size(), "axiom") + " take several records of at most " + std::to_string(most) +
-                ", but colliders know only those of their record; use fewer axioms");
+    throw Usage(counted(axioms.size(), "axiom") + " take several recordings of at most " + std::to_string(most) +
+                ", but colliders know only those of their recording; use fewer axioms");
   return {axioms, most};
 }
 
@@ -372,7 +372,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   deriverOptions.camera = camera;
   deriverOptions.expected =
       (vertices ? reference.result.vertexWords.size() * 4 / sizeof(SpawnedVertex) : reference.result.terminals) /
-      slices.records;
+      slices.recordings;
   Deriver deriver(session, grammar, slices.of(0), deriverOptions);
   if (options.maxInstances > deriver.mostElements())
     throw Usage("--max-instances is too large for this device: at most " + std::to_string(deriver.mostElements()));
@@ -404,7 +404,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     return written.size();
   };
   std::string budgets; // that the first recording exceeded that exceeded any
-  for (size_t record = 0; record < slices.records; ++record) {
+  for (size_t record = 0; record < slices.recordings; ++record) {
     if (record) deriver.setAxioms(slices.of(record));
     deriver.fit(prepared);
     const auto measured = deriver.measure(prepared, options.repeat);
@@ -420,8 +420,9 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
       }
       const auto depth = [&] { return depthOf(grammar.words, slices.of(record), &*view); };
       budgets = exceededBudgets(measured.report, hopeless, depth, deriver, vertices);
-      if (!budgets.empty() && slices.records > 1)
-        budgets.insert(0, "record " + std::to_string(record + 1) + " of " + std::to_string(slices.records) + ":\n");
+      if (!budgets.empty() && slices.recordings > 1)
+        budgets.insert(0,
+                       "recording " + std::to_string(record + 1) + " of " + std::to_string(slices.recordings) + ":\n");
     }
     if (vertices) {
       verticesWritten += take(deriver);
@@ -461,7 +462,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     bucketTriangles[graph.terminals[terminal].bucket] += triangles.counts[terminal];
   if (report.base.status < GPGP_SUCCESS)
     throw Failure(joined(options.grammars) + ": " + statusName(report.base.status) +
-                  ": the device ended loops of a shader before their time, and what it derived is wrong");
+                  ": the device ended loops of a shader early, so the result is wrong");
   if (!options.image.empty()) paint(options, triangles, graph);
   if (!options.out.empty()) writeGlb(options.out, graph, {instances, allVertices, allIndices}, glbInstances(options));
   const bool exceeded = report.base.status == GPGP_BUDGET_EXCEEDED;
@@ -484,9 +485,9 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   std::ostringstream text;
   text << report.terminals << " terminals (" << triangles.total << " triangles) from " << start.size()
        << (start.size() == 1 ? " axiom" : " axioms") << " in "
-       << (slices.records > 1 ? std::to_string(slices.records) + " records of up to " : std::string()) << report.rounds
-       << " rounds on " << session.device().name() << "; schedule " << chosen.name << ", " << chosen.groups
-       << " execution groups\n";
+       << (slices.recordings > 1 ? std::to_string(slices.recordings) + " recordings of up to " : std::string())
+       << report.rounds << " rounds on " << session.device().name() << "; schedule " << chosen.name << ", "
+       << chosen.groups << " execution groups\n";
   for (uint32_t bucket = 0; bucket < bucketNames.size(); ++bucket) {
     bucketList.push_back({{"bucket", bucket},
                           {"name", bucketNames[bucket]},
@@ -510,7 +511,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   if (changes)
     text << "derived anew: " << changes->changed << " of " << changes->instances << " instances in "
          << milliseconds(changes->part.median()) << " instead of " << milliseconds(changes->whole.median())
-         << " for all; all others are where and what they were\n";
+         << " for all; all others are unchanged\n";
   if (!chosen.file.empty()) text << "kernel: " << chosen.file.string() << '\n';
   if (!options.image.empty()) text << "picture: " << options.image << '\n';
   if (!options.out.empty()) text << "triangles: " << options.out << '\n';
@@ -525,7 +526,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
                   {"schedule_file", chosen.file.empty() ? Json() : Json(chosen.file.string())},
                   {"execution_groups", chosen.groups},
                   {"axioms", start.size()},
-                  {"records", slices.records},
+                  {"recordings", slices.recordings},
                   {"seed", options.seed},
                   {"terminals", report.terminals},
                   {"instances", instances.size()},
@@ -561,7 +562,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
 
 Work addSpawn(CLI::App& app) {
   auto options = std::make_shared<SpawnOptions>();
-  addSpawnOptions(*app.add_subcommand("spawn", "Derive a grammar on the GPU and say what came out"), *options);
+  addSpawnOptions(*app.add_subcommand("spawn", "Derive a grammar on the GPU and report the result"), *options);
   return [options](const CommonOptions& common) { return spawn(*options, common); };
 }
 

@@ -240,9 +240,9 @@ private:
       return draw(bandOf(placed_, middle, band.end));
     }
     if (report.pathsDropped)
-      throw Failure("the text is too much for one record: row " + std::to_string(band.first) + " of the picture has " +
-                    std::to_string(band.glyphs) + " glyphs, of whose paths " + std::to_string(report.pathsDropped) +
-                    " found no room; --width breaks lines");
+      throw Failure("the text is too much for one recording: row " + std::to_string(band.first) +
+                    " of the picture has " + std::to_string(band.glyphs) + " glyphs, of whose paths " +
+                    std::to_string(report.pathsDropped) + " found no room; --width breaks lines");
     const host::Picture rows =
         host::fromPremultiplied(size.width, size.height, host::downloadImage(device, target, VK_IMAGE_LAYOUT_GENERAL));
     std::copy(rows.rgba.begin(), rows.rgba.end(),
@@ -251,7 +251,7 @@ private:
       drawn.times.totals.erase(drawn.times.totals.begin()); // cold
       page_.milliseconds += drawn.times.median();
     }
-    ++page_.records;
+    ++page_.recordings;
     page_.status = report.base.status;
   }
 

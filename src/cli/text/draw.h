@@ -14,7 +14,7 @@ struct PageFrame {
 
 struct DrawnPage {
   host::Picture picture;
-  uint32_t records = 0;    ///< bands, from top to bottom
+  uint32_t recordings = 0; ///< bands, from top to bottom
   double milliseconds = 0; ///< median of the repeats, summed over recordings
   GpgpResult status = GPGP_SUCCESS;
 };

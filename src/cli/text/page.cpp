@@ -17,7 +17,7 @@ std::vector<GpgpFontAxisValue> parseAxes(const std::string& list) {
     char* end = nullptr;
     const bool named = part.size() > 5 && part[4] == '=';
     const float value = named ? std::strtof(part.c_str() + 5, &end) : 0;
-    if (!named || *end != 0) throw Usage("--axes '" + part + "' is no axis; write for example wght=650,wdth=80");
+    if (!named || *end != 0) throw Usage("--axes '" + part + "' is not an axis; write for example wght=650,wdth=80");
     axes.push_back({GPGP_TAG(part[0], part[1], part[2], part[3]), value});
   }
   return axes;

@@ -32,7 +32,8 @@ std::vector<GpgpFontFeature> parseFeatures(const std::string& text) {
     const bool valued = part.size() > 5 && part[4] == '=' && part[5] >= '0' && part[5] <= '9';
     const unsigned long value = valued ? std::strtoul(part.c_str() + 5, &end, 10) : 1;
     if (!named || !(part.size() == 4 || (valued && *end == 0 && value <= 65535)))
-      throw Usage("--features '" + part + "' is no feature; write four letters and a value, for example liga=0,smcp");
+      throw Usage("--features '" + part +
+                  "' is not a feature; write four letters and a value, for example liga=0,smcp");
     features.push_back({GPGP_TAG(part[0], part[1], part[2], part[3]), static_cast<uint32_t>(value)});
   }
   return features;
@@ -115,7 +116,7 @@ Outcome text(TextOptions options, const CommonOptions& common) {
         << " lines; laid out in " << milliseconds(page.shapeMilliseconds()) << '\n'
         << width << " x " << height << " pixels; GPU " << milliseconds(drawn.milliseconds) << " (median of "
         << options.repeat << ", the first run not counted";
-  if (drawn.records > 1) words << "; " << drawn.records << " records";
+  if (drawn.recordings > 1) words << "; " << drawn.recordings << " recordings";
   words << ") on " << session.device().name() << '\n';
   if (layout.truncated) words << "the text was cut off\n";
   if (!page.missing().empty()) words << page.missing().size() << " characters are in no font\n";
@@ -133,7 +134,7 @@ Outcome text(TextOptions options, const CommonOptions& common) {
                   {"height", height},
                   {"shape_ms", page.shapeMilliseconds()},
                   {"gpu_ms_median", drawn.milliseconds},
-                  {"records", drawn.records},
+                  {"recordings", drawn.recordings},
                   {"missing", page.missing()},
                   {"broken", broken},
                   {"image", options.out}};
@@ -146,7 +147,9 @@ Work addText(CLI::App& app) {
   auto options = std::make_shared<TextOptions>();
   CLI::App* command = app.add_subcommand("text", "Draw a string on the GPU");
   command->add_option("FONT", options->font, "TTF, OTF or TTC file")->required()->check(CLI::ExistingFile);
-  command->add_option("TEXT", options->page.text, "UTF-8; write -- before the positions where it begins with a dash")
+  command
+      ->add_option("TEXT", options->page.text,
+                   "UTF-8; if it begins with a dash, write -- before the positional arguments")
       ->required();
   command->add_option("OUT", options->out, "The picture, which fits the text and a margin")
       ->required()
@@ -165,34 +168,34 @@ Work addText(CLI::App& app) {
   command->add_option("--max-lines", options->page.maxLines, "Lines beyond these are cut off (default: none are)")
       ->check(CLI::Range(1u, 1000000u))
       ->type_name("N");
-  command->add_option("--ellipsis", options->page.ellipsis, "What ends a text that was cut off (default: …)")
+  command->add_option("--ellipsis", options->page.ellipsis, "Ends a text that was cut off (default: …)")
       ->type_name("TEXT");
-  command
-      ->add_option("--letter-spacing", options->page.letterSpacing,
-                   "Added after each letter, or taken where it is negative")
+  command->add_option("--letter-spacing", options->page.letterSpacing, "Added after each letter; may be negative")
       ->check(within(-4096.0, 4096.0))
       ->type_name("PX");
-  command->add_option("--line-spacing", options->page.lineSpacing, "Times the fonts' distance of lines (default: 1)")
+  command
+      ->add_option("--line-spacing", options->page.lineSpacing,
+                   "Line spacing as a multiple of the fonts' own (default: 1)")
       ->check(within(0.01, 100.0))
       ->type_name("TIMES");
   CLI::Option* spacing = command->get_option("--line-spacing");
-  command->add_option("--line-height", options->page.lineHeight, "From line to line (default: as the fonts say)")
+  command->add_option("--line-height", options->page.lineHeight, "Distance from line to line (default: the fonts' own)")
       ->check(within(0.01, kLargest))
       ->excludes(spacing)
       ->type_name("PX");
-  command->add_option("--tab-width", options->page.tabWidth, "From tab stop to tab stop (default: eight spaces)")
+  command->add_option("--tab-width", options->page.tabWidth, "Distance of tab stops (default: eight spaces)")
       ->check(within(1.0, kLargest))
       ->type_name("PX");
   command
       ->add_option("--fallback", options->fallbacks,
-                   "Font for what those before do not have; may be given several times")
+                   "Font for characters that the fonts before it lack; may be given several times")
       ->check(CLI::ExistingFile)
       ->allow_extra_args(false)
       ->type_name("FONT");
-  command->add_option("--face", options->page.face, "Which of FONT, where it is a collection")
+  command->add_option("--face", options->page.face, "Index of the face, if FONT is a collection")
       ->type_name("N")
       ->capture_default_str();
-  command->add_option("--axes", options->axes, "Values of FONT's axes, where it is variable: wght=650,wdth=80")
+  command->add_option("--axes", options->axes, "Values of axes, if FONT is variable: wght=650,wdth=80")
       ->type_name("LIST");
   command->add_option("--align", options->page.align, "start, end, left, center, right or justify (default: start)")
       ->transform(CLI::CheckedTransformer(std::map<std::string, GpgpTextAlign>{{"start", GPGP_TEXT_ALIGN_START},
@@ -205,8 +208,7 @@ Work addText(CLI::App& app) {
       ->type_name("SIDE");
   command->add_option("--color", options->color, "CSS colour of the text")->type_name("COLOUR")->capture_default_str();
   command
-      ->add_option("--outline", options->page.outlineWidth,
-                   "Width of a line along the letters' edges, below them, so that half of it shows")
+      ->add_option("--outline", options->page.outlineWidth, "Width of an outline behind the letters; half of it shows")
       ->check(within(0.0, 1024.0))
       ->type_name("PX");
   command->add_option("--outline-color", options->outlineColor, "CSS colour of that line")
@@ -239,7 +241,7 @@ Examples:
   gpgp text DejaVuSans.ttf "A long message" line.png --width 120 --max-lines 1 --underline
   gpgp text DejaVuSans.ttf office office.png --features liga=0 --json | jq .glyphs
 
-Characters that no font has are named on standard error and drawn as the font's sign for them.)");
+Characters that no font has are named on standard error and drawn as the font's missing-glyph sign.)");
   return [options](const CommonOptions& common) { return text(*options, common); };
 }
 

@@ -123,11 +123,10 @@ void addQueues(CLI::App& command, std::string& queues, const std::string& unless
   std::vector<std::string> kinds{"group", "mixed"};
   if (queues == "both") kinds.push_back(queues);
   command
-      .add_option(
-          "--queues", queues,
-          "Where shapes of a workgroup wait. group: each execution group has a queue, and what runs together is "
-          "of one; mixed: all on one stack" +
-              unless)
+      .add_option("--queues", queues,
+                  "Where the shapes of a workgroup wait. group: each execution group has a queue, and only shapes of "
+                  "one group run together; mixed: all on one stack" +
+                      unless)
       ->check(CLI::IsMember(kinds))
       ->capture_default_str();
 }
@@ -247,10 +246,10 @@ std::pmr::vector<spawn::Kernel> storedKernels(const std::filesystem::path& file,
   try {
     return kernelsIn(file, grammar);
   } catch (const Unusable& error) {
-    std::fprintf(stderr, "gpgp: %s; what is kept there is made anew\n", error.what());
+    std::fprintf(stderr, "gpgp: %s; its contents are made anew\n", error.what());
   } catch (const Failure& error) { // not the command's own file
     if (!cache) throw;
-    std::fprintf(stderr, "gpgp: %s; what is kept there is made anew\n", error.what());
+    std::fprintf(stderr, "gpgp: %s; its contents are made anew\n", error.what());
   }
   return {};
 }

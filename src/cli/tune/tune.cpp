@@ -106,7 +106,7 @@ Work addTune(CLI::App& app) {
   CLI::App* command = app.add_subcommand("tune", "Find the fastest schedule of a grammar on this device");
   addGrammars(*command, options->grammars);
   CLI::Option* axioms =
-      command->add_option("--axioms", options->axioms, "Start shapes to tune for; those of linked grammars in turn")
+      command->add_option("--axioms", options->axioms, "Start shapes to tune for; linked grammars take turns")
           ->check(CLI::Range(1u, 1000000u))
           ->capture_default_str();
   command->add_option("--axiom-file", options->axiomFile, "Start shapes from a file, as `gpgp spawn` takes it")
@@ -122,15 +122,14 @@ Work addTune(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--search", options->search,
-                   "Which schedules are tried beside the named ones: every valid partition, random ones, or the "
-                   "heuristics' with coins for the edges that they leave open. auto: every one where they are few, or "
-                   "else some of both, and then what is near the best")
+                   "Which schedules are tried beside the named ones: every valid partition, random ones, or those of "
+                   "the heuristics, with random choices where they leave edges open. auto: all of them if they are "
+                   "few, otherwise some of both, and then neighbours of the best")
       ->check(CLI::IsMember({"auto", "exhaustive", "random", "heuristic"}))
       ->capture_default_str();
   addGroupSize(*command, settings.heuristics);
   command
-      ->add_option("--matching", options->matching,
-                   "Execution groups that differ in parameters only share one piece of code")
+      ->add_option("--matching", options->matching, "Execution groups that differ only in parameters share their code")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
   addQueues(*command, options->queues, "; both: the fastest schedules are tried with either");
@@ -141,15 +140,14 @@ Work addTune(CLI::App& app) {
       ->check(CLI::Range(3u, 1000u))
       ->capture_default_str();
   command
-      ->add_option(
-          "--seconds", settings.seconds,
-          "Time budget: what would probably take longer is left out, slow derivations are measured less often, and "
-          "the best so far is kept. The interpreter and one schedule are always measured, which takes a "
-          "software device some seconds; 0: no limit")
+      ->add_option("--seconds", settings.seconds,
+                   "Time budget: candidates that would probably take longer are left out, slow derivations are "
+                   "measured less often, and "
+                   "the best so far is kept. The interpreter and one schedule are always measured, which takes a "
+                   "software device some seconds; 0: no limit")
       ->check(within(0.0, 86400.0))
       ->capture_default_str();
-  command->add_option("--max-depth", settings.maxDepth,
-                      "Budget: how deep rules nest in themselves (0: the library's default)");
+  command->add_option("--max-depth", settings.maxDepth, "Budget: recursion depth of rules (0: the library's default)");
   command->add_flag("--schedules-only", settings.schedulesOnly, "Leave sizes and counts as the device suggests");
   command
       ->add_option("-o,--out", options->out,

@@ -56,7 +56,7 @@ constexpr double kForMeasurement = 0.02;
 constexpr size_t kFirstPart = 4;
 constexpr double kLittleTime = 0.1;
 /// Schedules that are tried with queues; devices whose kernels with queues derive another way lose time on more.
-constexpr size_t kTwins = 4, kSoftwareTwins = 1;
+constexpr size_t kQueued = 4, kSoftwareQueued = 1;
 /// That are measured once more at the end.
 constexpr size_t kFinalists = 4;
 /// Of the finalists, whose fastest counts.
@@ -149,7 +149,7 @@ private:
   /// The best few with queues as well.
   void measureQueues(std::vector<Candidate>& all) {
     std::vector<Candidate> list;
-    for (size_t i = 0; i < std::min(software_ ? kSoftwareTwins : kTwins, all.size()); ++i) {
+    for (size_t i = 0; i < std::min(software_ ? kSoftwareQueued : kQueued, all.size()); ++i) {
       list.push_back({tuned_.schedules.size()});
       tuned_.schedules.push_back(withQueues(tuned_.schedules[all[i].schedule]));
     }

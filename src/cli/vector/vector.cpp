@@ -387,18 +387,18 @@ Work addVector(CLI::App& app) {
   command->add_option("--zoom", options->zoom, "Magnify the picture around its middle")
       ->check(CLI::Range(1e-6, 1e6))
       ->capture_default_str();
-  command->add_option("--center", options->center, "The point of the page that the picture's middle shows")
+  command->add_option("--center", options->center, "The point of the page in the middle of the picture")
       ->expected(2)
       ->delimiter(',')
       ->type_name("X,Y");
-  command->add_option("--tilt", options->tilt, "Tilt the page by so many degrees, in perspective")
+  command->add_option("--tilt", options->tilt, "Tilt the page by this many degrees, in perspective")
       ->check(CLI::Range(-89.0, 89.0))
       ->capture_default_str();
   CLI::Option* frame =
-      command->add_option("--frame", options->frame, "Lottie: the frame, which need not be whole (default: the first)")
+      command->add_option("--frame", options->frame, "Lottie: the frame, which may be a fraction (default: the first)")
           ->type_name("N");
   addSize(*command, "--sheet", options->sheet,
-          "Lottie: a sheet of so many columns and rows of frames, equally spaced over the animation")
+          "Lottie: a sheet of W columns and H rows of frames, equally spaced over the animation")
       ->excludes(frame);
   command->add_option("--background", options->background, "CSS colour behind the drawing (default: transparent)")
       ->type_name("COLOUR");
@@ -408,7 +408,7 @@ Work addVector(CLI::App& app) {
   command->add_option("--stages", options->stages, "Write each stage of the conversion as SVG")->type_name("FOLDER");
   command
       ->add_option("--repeat", options->repeat,
-                   "Rasterise N times and report the median time; a first time before them is not counted")
+                   "Rasterise N times and report the median time; a first run before them is not counted")
       ->check(CLI::Range(1u, 100000u))
       ->capture_default_str();
   command->add_flag("--all-warnings", options->allWarnings, "Name every part that is approximated or left out");
@@ -424,8 +424,8 @@ Examples:
   gpgp vector spinner.json --frame 12.5 --out spinner.png
   gpgp vector spinner.lottie --sheet 6x4 --size 160x160 --out sheet.png
 
-What is approximated or left out is named on standard error with its place, the first ten unless --all-warnings is given,
-counted, and listed by --json: all as messages, what is not supported as unsupported.)");
+Parts that are approximated or left out are counted, and named on standard error with their place: the first ten, or all
+with --all-warnings. --json lists all of them as messages, and unsupported ones also as unsupported.)");
   return [options](const CommonOptions& common) { return vector(*options, common); };
 }
 

@@ -33,7 +33,7 @@ MotionCell::MotionCell(const Motion& motion, float eyes, const View& view, Size 
   const GpgpResult result = gpgpGetViewMotionCameras(&info, &count, cameras, &coverage);
   if (result != GPGP_SUCCESS)
     throw Failure(std::string("--motion: ") + gpgpResultString(result) +
-                  ": the camera is no perspective one, or the viewer turns by more than 90 degrees");
+                  ": the camera is not a perspective camera, or the viewer turns by more than 90 degrees");
   for (uint32_t i = 0; i < count; ++i) views.push_back({glm::make_mat4(cameras[i].viewProjection), view.reversed});
 }
 

@@ -71,10 +71,10 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
       ->check(CLI::ExistingFile);
   addSize(command, "--size", options.size, "Viewport in pixels (default 1280x720)");
   CLI::Option* yaw =
-      command.add_option("--yaw", options.yaw, "Degrees around the model of the camera that sees all of it")
+      command.add_option("--yaw", options.yaw, "Degrees around the model, for a camera that sees all of it")
           ->check(within(-1e6, 1e6))
           ->capture_default_str();
-  CLI::Option* pitch = command.add_option("--pitch", options.pitch, "Degrees above the horizon of the same")
+  CLI::Option* pitch = command.add_option("--pitch", options.pitch, "Degrees above the horizon, for the same camera")
                            ->check(within(-89.0, 89.0))
                            ->capture_default_str();
   command.add_flag("--two-sided", options.twoSided, "Back faces count as well");
@@ -91,11 +91,13 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
                            ->excludes(pitch);
   command
       .add_option("--distance", options.distance,
-                  "Of the orbit's cameras from the middle of the bounding box, in halves of its diagonal")
+                  "Distance of the orbit's cameras from the middle of the bounding box, in half diagonals")
       ->check(within(0.01, 1e6))
       ->capture_default_str()
       ->needs(orbit);
-  command.add_option("--camera", options.camera, "16 numbers, world to clip, column-major; a 17th not 0: near is 1")
+  command
+      .add_option("--camera", options.camera,
+                  "16 numbers: the matrix from world to clip space, column-major; a 17th other than 0: reversed depth")
       ->check(CLI::ExistingFile)
       ->excludes(orbit)
       ->excludes(yaw)
@@ -112,7 +114,7 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
       command
           .add_option_function<std::string>(
               "--heuristics", [&options](const std::string& text) { options.heuristics = parseHeuristics(text); },
-              "Conservative: of in-circle, depth, front (depth, but what lies in front is kept), none (default "
+              "Conservative: list of in-circle, depth, front (depth, but keeps what lies in front), or none (default "
               "in-circle,depth)")
           ->type_name("LIST"),
       command.add_option("--resolution", options.resolution, "Conservative: factor of the viewport's size")
@@ -136,12 +138,12 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
       command
           .add_option_function<std::string>(
               "--motion", [&options](const std::string& text) { options.motion = parseMotion(text); },
-              "What a viewer may see who walks and turns meanwhile: world units per second along the view, degrees per "
-              "second, and milliseconds until the result is no longer shown; gpgp chooses the view points. --reference "
+              "What a viewer may see who walks and turns until the result is no longer shown: world units per second "
+              "along the view, degrees per second, and milliseconds; gpgp chooses the view points. --reference "
               "compares with what viewers see at the picture's size")
           ->type_name("SPEED,TURN,LATENCY")
           ->excludes(cell);
-  command.add_option("--eyes", options.eyes, "With two eyes that are so far apart, in world units")
+  command.add_option("--eyes", options.eyes, "Distance between two eyes, in world units")
       ->check(within(0.0, 1e6))
       ->needs(motion);
   command.add_option("--viewers", options.viewers, "How many viewers --reference compares a motion with")
@@ -163,19 +165,18 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
       ->capture_default_str()
       ->needs(reference);
   command
-      .add_option(
-          "--overlay", options.overlay,
-          "From the first camera, three pixels each way for one of the viewport's, the middle one at its centre: "
-          "green standard, grey added by the method, red too much, blue missed")
+      .add_option("--overlay", options.overlay,
+                  "Write a picture of the first camera's view, 3 x 3 pixels for each of the viewport's. Green: found "
+                  "by standard sampling, grey: added by the method, red: not in the reference, blue: missed")
       ->check(pngFile())
       ->type_name("FILE.png");
   command
       .add_option("--export-ids", options.exportIds,
-                  "Triangles that any of the cameras sees as little-endian uint32, ascending")
+                  "Write the triangles that any of the cameras sees, as little-endian uint32, ascending")
       ->type_name("FILE");
   command
       .add_option("--repeat", options.repeat,
-                  "Sample N times and report the median time; a first time before them is not counted")
+                  "Sample N times and report the median time; a first run before them is not counted")
       ->check(CLI::Range(1u, 100000u))
       ->capture_default_str();
   command
@@ -185,8 +186,8 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
   CLI::Option* atlas = command
                            .add_option_function<std::string>(
                                "--atlas", [&options](const std::string& text) { options.atlas = parseAtlas(text); },
-                               "Allocates a shading atlas of N x N texels (or WxH) for what the first camera sees; of "
-                               "--repeat, every other time one pair of triangles in 64 is left out")
+                               "Allocate a shading atlas of N x N texels (or WxH) for what the first camera sees; with "
+                               "--repeat, every other recording leaves out one pair of triangles in 64")
                            ->type_name("N");
   command.add_option("--texels", options.texelsPerPixel, "Texels of the atlas for each pixel of a triangle's area")
       ->check(within(1.0 / 1024, 64.0))
@@ -231,10 +232,10 @@ Triangles are numbered from 0: of OBJ files in the order of their f lines, a pol
 ones as the fan of corners 1 2 3, 1 3 4, ...; concave ones by ear clipping); of glTF files node after node, depth first,
 and in each its instances, its primitives and their indices; of a grid copy after copy, along X first.
 
---reference 64 takes 65 records, and --recheck 256, the default, up to 1025 more: minutes on software devices. Standard
+--reference 64 takes 65 recordings, and --recheck 256, the default, up to 1025 more: minutes on software devices. Standard
 error says how long; --recheck 0, a smaller --reference or --size take less.
 
-JSON: gpu_ms_median, gpuMilliseconds and passes are milliseconds of a view's record (the median of --repeat), of a cell
+JSON: gpu_ms_median, gpuMilliseconds and passes are milliseconds of a view's recording (the median of --repeat), of a cell
 the sum over its views, of an orbit the median over its cameras; gpu_ms_median is gpuMilliseconds.median, and passes
 adds up those of gpuMilliseconds.passes that have one name. Counts and shares are averages over an orbit's cameras.)");
 }

@@ -32,7 +32,7 @@ View readView(const std::string& file) {
     char* end = nullptr;
     numbers.push_back(std::strtof(word.c_str(), &end));
     if (*end || !std::isfinite(numbers.back()))
-      throw Failure(file + ": word " + std::to_string(numbers.size()) + ", '" + word + "', is no finite number");
+      throw Failure(file + ": word " + std::to_string(numbers.size()) + ", '" + word + "', is not a finite number");
   }
   if (numbers.size() < 16 || numbers.size() > 17)
     throw Failure(file + ": holds " + std::to_string(numbers.size()) + " numbers; a camera is 16, or 17");

@@ -246,7 +246,7 @@ std::string remarks(const Model& model, const Figures& figures) {
     text << figures.behindWalls << " of " << figures.viewPoints
          << " view points left out: a triangle lies between them and the middle (--through-walls keeps them)\n";
   if (figures.skippedDraws) text << figures.skippedDraws << " draws skipped: they have no mesh\n";
-  if (model.omitted) text << model.omitted << " primitives are no triangles and were left out\n";
+  if (model.omitted) text << model.omitted << " primitives are not triangles and were left out\n";
   for (const std::string& note : model.notes) text << note << '\n';
   return text.str();
 }

@@ -256,7 +256,7 @@ void Compiler::set(const Statement& s, const Context& context) {
   }
   if (Entity* entity = module->find(last, false, 0)) {
     if (entity->kind != Definition::Kind::attribute) {
-      messages_.error(context.file(), target.place, "'" + target.text + "' is no attr, and cannot be set");
+      messages_.error(context.file(), target.place, "'" + target.text + "' is not an attr, and cannot be set");
       return;
     }
     refer(context, *entity);

@@ -58,7 +58,7 @@ CgaValue Deriver::cgaRange(const CgaValue& a, const CgaValue& b) {
 
 CgaValue Deriver::cgaIndex(uint32_t first, uint32_t count) {
   if (stack_[first].type != kCgaArray) {
-    warn("index", "[ ] stands behind what is no array");
+    warn("index", "[ ] follows something that is not an array");
     return stack_[first];
   }
   const ArrayValue from = arrayOf(stack_[first]);
@@ -134,7 +134,8 @@ CgaValue Deriver::cgaAddOther(const CgaValue& a, const CgaValue& b) {
     joined.values.insert(joined.values.end(), other.values.begin(), other.values.end());
     return array(std::move(joined));
   }
-  if (a.type == kCgaArray || b.type == kCgaArray) warn("array sum", "'+' joins an array with what is none");
+  if (a.type == kCgaArray || b.type == kCgaArray)
+    warn("array sum", "'+' joins an array with something that is not an array");
   return floatValue(add(number(a), number(b)));
 }
 
@@ -156,7 +157,7 @@ CgaValue Deriver::cgaCompareOther(uint32_t code, const CgaValue& a, const CgaVal
   if (isText(a) != isText(b)) { // a string and a number are different, as long as they are only compared for that
     if (code == kCgaEqualCode) return cgaBoolValue(false);
     if (code == kCgaNotEqualCode) return cgaBoolValue(true);
-    warn("comparison", "a string is compared with what is none");
+    warn("comparison", "a string is compared with something that is not a string");
     return cgaBoolValue(false);
   }
   return cgaBoolValue(cgaCompare(code, number(a), number(b)));

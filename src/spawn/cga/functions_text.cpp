@@ -395,7 +395,7 @@ std::string hexOf(const vec3& c, float opacity) {
   CgaValue Deriver::name##_(const Arguments& a) {                                                                      \
     glm::vec4 c(0, 0, 0, 1);                                                                                           \
     bool hasOpacity = false;                                                                                           \
-    if (!parseColor(text(a[0]), c, hasOpacity)) warn("color", "\"" + text(a[0]) + "\" is no colour");                  \
+    if (!parseColor(text(a[0]), c, hasOpacity)) warn("color", "\"" + text(a[0]) + "\" is not a colour");               \
     return floatValue(value);                                                                                          \
   }
 GPGP_CGA_COLOR(colorHexToR, c.x)

@@ -1,6 +1,6 @@
 #include "spawn/cga/graph_values.h"
 
-#include "spawn/graph/operators.h"
+#include "spawn/graph/operator_info.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -48,13 +48,13 @@ void bound(Formula& f) {
   default: among({0, 1}); // comparisons
   }
 }
-bool isTruth(uint32_t code) { return code >= kCodeEqual && code <= kCodeOr; }
+bool isBoolean(uint32_t code) { return code >= kCodeEqual && code <= kCodeOr; }
 } // namespace
 
-FormulaPtr number(float value, bool isTruth) {
+FormulaPtr number(float value, bool isBoolean) {
   auto formula = leaf(Formula::Kind::number, settle(value), settle(value));
   formula->value = settle(value);
-  formula->isTruth = isTruth;
+  formula->isBoolean = isBoolean;
   return formula;
 }
 
@@ -95,7 +95,7 @@ FormulaPtr combined(uint32_t code, const FormulaPtr& a, const FormulaPtr& b) {
   for (const auto& [one, other] : kMirrored)
     if (isDeeper && code == one) return combined(other, b, a);
   if (isSymmetric && b->stack > a->stack && !a->draws && !b->draws) return combined(code, b, a); // takes less at once
-  if (a->isNumber() && b->isNumber()) return number(combine(code, a->value, b->value, 0), isTruth(code));
+  if (a->isNumber() && b->isNumber()) return number(combine(code, a->value, b->value, 0), isBoolean(code));
   if (b->isNumber() && b->value == 0 && (code == kCodeAdd || code == kCodeSubtract)) return a;
   if (a->isNumber() && a->value == 0 && code == kCodeAdd) return b;
   if (b->isNumber() && b->value == 1 && (code == kCodeMultiply || code == kCodeDivide)) return a;
@@ -108,7 +108,7 @@ FormulaPtr combined(uint32_t code, const FormulaPtr& a, const FormulaPtr& b) {
   f->b = b;
   f->sizes = a->sizes | b->sizes;
   f->draws = a->draws || b->draws;
-  f->isTruth = isTruth(code);
+  f->isBoolean = isBoolean(code);
   f->stack = std::max(a->stack, b->stack + 1);
   f->length = a->length + b->length + 1;
   if (f->stack > kMaxStack || f->length > kMostCodes) return nullptr;
@@ -116,17 +116,17 @@ FormulaPtr combined(uint32_t code, const FormulaPtr& a, const FormulaPtr& b) {
   return f;
 }
 
-FormulaPtr notOf(const FormulaPtr& truth) {
-  if (!truth || truth->isNumber()) return truth ? number(1 - truth->value, true) : nullptr;
-  const FormulaPtr result = combined(kCodeAdd, combined(kCodeMultiply, truth, number(-1)), number(1));
+FormulaPtr notOf(const FormulaPtr& condition) {
+  if (!condition || condition->isNumber()) return condition ? number(1 - condition->value, true) : nullptr;
+  const FormulaPtr result = combined(kCodeAdd, combined(kCodeMultiply, condition, number(-1)), number(1));
   if (!result) return nullptr;
   auto copy = std::make_shared<Formula>(*result);
-  copy->isTruth = true;
+  copy->isBoolean = true;
   return copy;
 }
 
-FormulaPtr truthOf(const FormulaPtr& a) {
-  if (!a || a->isTruth) return a;
+FormulaPtr asBoolean(const FormulaPtr& a) {
+  if (!a || a->isBoolean) return a;
   if (a->isNumber()) return number(a->value != 0 ? 1.0f : 0.0f, true);
   if (a->draws) return nullptr;
   // Equality of graphs tolerates rounding.
@@ -138,18 +138,18 @@ FormulaPtr selected(const FormulaPtr& condition, const FormulaPtr& yes, const Fo
   if (condition->isNumber()) return condition->value != 0 ? yes : no;
   if (yes->isNumber() && no->isNumber() && yes->value == no->value) return yes;
   if (condition->draws || yes->draws || no->draws) return nullptr;
-  const FormulaPtr truth = truthOf(condition);
-  const bool areTruths = yes->isTruth && no->isTruth;
+  const FormulaPtr chosen = asBoolean(condition);
+  const bool areBooleans = yes->isBoolean && no->isBoolean;
   FormulaPtr result;
-  if (areTruths && yes->isNumber() && no->isNumber())
-    result = yes->value != 0 ? truth : notOf(truth);
+  if (areBooleans && yes->isNumber() && no->isNumber())
+    result = yes->value != 0 ? chosen : notOf(chosen);
   else
-    result = combined(kCodeAdd, combined(kCodeMultiply, truth, yes), combined(kCodeMultiply, notOf(truth), no));
+    result = combined(kCodeAdd, combined(kCodeMultiply, chosen, yes), combined(kCodeMultiply, notOf(chosen), no));
   if (!result || result->isNumber()) return result;
   auto copy = std::make_shared<Formula>(*result);
   copy->low = std::min(yes->low, no->low);
   copy->high = std::max(yes->high, no->high);
-  copy->isTruth = areTruths;
+  copy->isBoolean = areBooleans;
   return copy;
 }
 

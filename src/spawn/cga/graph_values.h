@@ -23,7 +23,7 @@ struct Formula {
   FormulaPtr a, b;         ///< binary
   uint32_t sizes = 0;      ///< bits: axes of which a size is read
   bool draws = false;      ///< numbers
-  bool isTruth = false;    ///< 0 or 1
+  bool isBoolean = false;  ///< 0 or 1
   uint32_t stack = 1;      ///< values at once
   uint32_t length = 1;     ///< codes
   float low = 0, high = 0; ///< bounds
@@ -31,7 +31,7 @@ struct Formula {
   bool isNumber() const { return kind == Kind::number; }
 };
 
-FormulaPtr number(float value, bool isTruth = false);
+FormulaPtr number(float value, bool isBoolean = false);
 FormulaPtr sizeOf(uint32_t axis);
 /// Number index of those that every axiom has, from its seed, in [0, 1).
 FormulaPtr axiomNumber(uint32_t index);
@@ -40,9 +40,9 @@ FormulaPtr drawn(uint32_t index);
 FormulaPtr combined(uint32_t code, const FormulaPtr& a, const FormulaPtr& b);
 /// condition ? yes : no, of which none draws.
 FormulaPtr selected(const FormulaPtr& condition, const FormulaPtr& yes, const FormulaPtr& no);
-FormulaPtr notOf(const FormulaPtr& truth);
+FormulaPtr notOf(const FormulaPtr& condition);
 /// 1 where a value is not 0.
-FormulaPtr truthOf(const FormulaPtr& a);
+FormulaPtr asBoolean(const FormulaPtr& a);
 /// At least 0.
 FormulaPtr clamped(const FormulaPtr& a);
 /// With other axes: the new one of each old one, 3: none, and then the result is none.

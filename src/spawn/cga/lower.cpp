@@ -130,7 +130,7 @@ Lowering::Text Lowering::chooses(const std::vector<float>& chances, std::vector<
     const bool isLast = i + 1 == ways.size();
     const float chance = isLast ? shader::subtract(100, sum) : chances[i];
     const bool isExact = chance * 1024 == std::floor(chance * 1024);
-    if ((!isExact && ways.size() > 2) || chance < 0) misfit("percentages that are no multiples of 1/1024", place);
+    if ((!isExact && ways.size() > 2) || chance < 0) misfit("percentages that are not multiples of 1/1024", place);
     sum = shader::add(sum, chance);
     ways[i] = limited(std::move(ways[i]));
     result.text += (i ? " | " : " ") + text(chance) + ": " + ways[i].text;
@@ -346,7 +346,7 @@ Lowering::Text Lowering::branches(const Statement& s, const Rest& rest, const Sc
   std::vector<std::pair<FormulaPtr, Text>> ways;
   for (const Branch& branch : s.branches) {
     const FormulaPtr condition =
-        branch.condition ? fits(truthOf(argumentNumber(*branch.condition, scope, state)), branch.condition->place)
+        branch.condition ? fits(asBoolean(argumentNumber(*branch.condition, scope, state)), branch.condition->place)
                          : number(1);
     if (condition->isNumber() && condition->value == 0) continue;
     ways.push_back({condition, way(&branch)});

@@ -107,15 +107,15 @@ Value Lowering::value(const Expression& e, const Scope& scope, const State& stat
   case Kind::unary: {
     const FormulaPtr inner = numberOf(value(*e.arguments[0], scope, state), e.place);
     if (e.text != "!") return valueOf(fits(combined(shader::kCodeSubtract, number(0), inner), e.place));
-    return valueOf(fits(notOf(truthOf(inner)), e.place));
+    return valueOf(fits(notOf(asBoolean(inner)), e.place));
   }
   case Kind::binary: {
     const Value left = value(*e.arguments[0], scope, state);
     if (e.text == "&&" || e.text == "||") {
-      const FormulaPtr a = fits(truthOf(numberOf(left, e.place)), e.place);
+      const FormulaPtr a = fits(asBoolean(numberOf(left, e.place)), e.place);
       if (a->isNumber() && (a->value != 0) == (e.text == "||")) return valueOf(a);
       const uint32_t before = draws_;
-      const FormulaPtr b = fits(truthOf(numberOf(value(*e.arguments[1], scope, state), e.place)), e.place);
+      const FormulaPtr b = fits(asBoolean(numberOf(value(*e.arguments[1], scope, state), e.place)), e.place);
       if (draws_ != before && !a->isNumber() && attributeSlot_ == UINT32_MAX)
         misfit("a random number in a part of a condition that is not always needed", e.place);
       if (a->isNumber()) return valueOf(b);
@@ -217,7 +217,7 @@ Value Lowering::choices(const Expression& e, const Scope& scope, const State& st
       condition = fits(combined(kCodeLess, number, part), e.place);
       number = fits(combined(kCodeSubtract, number, part), e.place);
     }
-    condition = fits(truthOf(condition), c.condition->place);
+    condition = fits(asBoolean(condition), c.condition->place);
     if (condition->isNumber() && condition->value == 0) continue;
     const bool isSure = condition->isNumber();
     ways.push_back({isSure ? nullptr : condition, c.value.get()});
@@ -356,8 +356,8 @@ Value Lowering::math(const Expression& e, const Scope& scope, const State& state
   }
   if (std::all_of(a.begin(), a.end(), [](const FormulaPtr& f) { return f->isNumber(); })) {
     const float x = a.empty() ? 0.0f : a[0]->value, y = a.size() > 1 ? a[1]->value : 0.0f;
-    const bool isTruth = function == kCgaIsinfMath || function == kCgaIsnanMath;
-    return valueOf(number(cgaMath(function, x, y), isTruth));
+    const bool isBoolean = function == kCgaIsinfMath || function == kCgaIsnanMath;
+    return valueOf(number(cgaMath(function, x, y), isBoolean));
   }
   const auto floorOf = [](const FormulaPtr& f) { return combined(kCodeFloor, f, number(1)); };
   const auto opposite = [](const FormulaPtr& f) { return combined(kCodeSubtract, number(0), f); };

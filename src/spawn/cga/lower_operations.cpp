@@ -50,7 +50,7 @@ Lowering::Text Lowering::operation(const Statement& s, Operation operation, cons
   const auto needsBox = [&] {
     if (state.form == Form::asset) misfit("'" + s.name + "' of an asset or a round primitive", s.place);
     if (state.form == Form::roof) misfit("'" + s.name + "' of a roof", s.place);
-    if (state.form == Form::trapezoid) misfit("'" + s.name + "' of a roof's face that is no rectangle", s.place);
+    if (state.form == Form::trapezoid) misfit("'" + s.name + "' of a roof face that is not a rectangle", s.place);
   };
   const auto isPositive = [&] {
     return std::all_of(state.extents.begin(), state.extents.end(), [](Extent e) { return e == Extent::positive; });
@@ -261,7 +261,7 @@ Lowering::Text Lowering::operation(const Statement& s, Operation operation, cons
 
 Lowering::Text Lowering::colored(const Value& value, const State& state, const Continue& goOn, Place place) {
   if (value.kind == Value::Kind::choice)
-    return condition(fits(truthOf(value.formula), place), colored(value.values[0], state, goOn, place),
+    return condition(fits(asBoolean(value.formula), place), colored(value.values[0], state, goOn, place),
                      colored(value.values[1], state, goOn, place));
   if (value.kind == Value::Kind::drawn) {
     std::vector<Text> ways;
@@ -272,7 +272,7 @@ Lowering::Text Lowering::colored(const Value& value, const State& state, const C
   State after = state;
   glm::vec4 color;
   bool hasOpacity = false;
-  if (!parseColor(value.string, color, hasOpacity)) misfit("\"" + value.string + "\", which is no colour,", place);
+  if (!parseColor(value.string, color, hasOpacity)) misfit("\"" + value.string + "\", which is not a colour,", place);
   after.color = hasOpacity ? color : glm::vec4(glm::vec3(color), state.color.w);
   return goOn(std::move(after));
 }
@@ -298,7 +298,7 @@ Lowering::Text Lowering::split(const Statement& s, const Scope& scope, const Sta
   if (axisName != "x" && axisName != "y" && axisName != "z") misfit("split along '" + axisName + "'", s.place);
   if (state.form == Form::asset) misfit("split of an asset or a round primitive", s.place);
   if (state.form == Form::roof) misfit("split of a roof", s.place);
-  if (state.form == Form::trapezoid) misfit("split of a roof's face that is no rectangle", s.place);
+  if (state.form == Form::trapezoid) misfit("split of a roof face that is not a rectangle", s.place);
   const uint32_t axis = axisNamed(axisName);
   if (state.extents[axis] == Extent::zero) return nothing();
   size_t place = 0;
@@ -466,7 +466,7 @@ bool Lowering::selects(const cga::Part& part, const Scope& scope, const State& s
   if (name.empty() || !isSelector(name)) {
     const Value v = argument(e, scope, state);
     if (v.kind != Value::Kind::number || !v.formula->isNumber()) misfit("a selector that is not known", e.place);
-    if (v.formula->isTruth) return v.formula->value != 0;
+    if (v.formula->isBoolean) return v.formula->value != 0;
     const float wanted = v.formula->value;
     return static_cast<float>(index) == (wanted < 0 ? wanted + static_cast<float>(count) : wanted);
   }
@@ -507,7 +507,7 @@ Lowering::Text Lowering::components(const Statement& s, const Scope& scope, cons
     if (part.isOneShape || !part.selector) misfit("comp with =, of several faces as one shape,", part.place);
   if (state.roof) return roofFaces(s, scope, state);
   if (state.form == Form::trapezoid || (state.isTilted && state.form == Form::box))
-    misfit("comp of a roof's face that is no rectangle, or was extruded,", s.place);
+    misfit("comp of a roof face that is not a rectangle, or was extruded,", s.place);
   const bool isBox = state.form == Form::box;
   constexpr uint32_t kFaces[6] = {1, 3, 5, 2, 4, 0}; // by CGA's index
   const bool isMesh = isBox && state.isMesh;         // children by parts then, as the CPU counts them

@@ -235,7 +235,7 @@ Lowering::Text Lowering::setback(const Statement& s, const Scope& scope, const S
   if (state.extents[0] != Extent::positive || state.extents[across] != Extent::positive)
     misfit("'" + s.name + "' of a rectangle that may have no extent along an axis", s.place);
   const Value value = argument(*s.arguments.at(0), scope, state);
-  if (value.kind != Value::Kind::number) misfit("a setback that is no plain number", s.place);
+  if (value.kind != Value::Kind::number) misfit("a setback that is not a plain number", s.place);
   const FormulaPtr distance = value.formula;
   if (distance->draws || !(distance->low > 0)) misfit("a setback that is random or may be 0 or less", s.place);
   // Edges as the CPU counts them: at the highest z or the lowest y, then on.

@@ -143,7 +143,7 @@ Module* Modules::instantiate(const File* file, std::string prefix, Module* impor
       imported = nullptr;
     } else if (!imported) {
       messages_.once("import " + i.path, file->path, i.place,
-                     "there is no file \"" + i.path + "\"; what it would define does nothing");
+                     "there is no file \"" + i.path + "\"; names that it would define have no effect");
     } else if (depth + 1 > kDeepestImport || modules_.size() >= kMostModules) {
       messages_.error(file->path, i.place,
                       "imports are nested more than " + std::to_string(kDeepestImport) + " deep, or more than " +

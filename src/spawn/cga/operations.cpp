@@ -369,7 +369,7 @@ bool Deriver::color_(const Arguments& a) {
     bool hasOpacity = false;
     glm::vec4 value;
     if (!parseColor(text(a[0]), value, hasOpacity)) {
-      warn("color", "\"" + text(a[0]) + "\" is no colour; expected \"#rrggbb\" or \"#rrggbbaa\"");
+      warn("color", "\"" + text(a[0]) + "\" is not a colour; expected \"#rrggbb\" or \"#rrggbbaa\"");
       return true;
     }
     c = hasOpacity ? value : glm::vec4(glm::vec3(value), c.w);

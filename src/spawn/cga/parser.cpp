@@ -175,7 +175,7 @@ private:
     if (token().is("(")) parameters(d);
     if (acceptWord("with")) locals(d);
     if (accept("-->")) {
-      if (d.kind != Definition::Kind::rule) errors_.error(d.place, "attr and const are no rules; write = for -->");
+      if (d.kind != Definition::Kind::rule) errors_.error(d.place, "attr and const are not rules; write = for -->");
       d.kind = Definition::Kind::rule;
       d.hasBody = true;
       for (const Annotation& a : d.annotations)

@@ -1,6 +1,6 @@
 #include "spawn/evaluator/program.h"
 
-#include "spawn/graph/operators.h"
+#include "spawn/graph/operator_info.h"
 
 #include <cstddef>
 

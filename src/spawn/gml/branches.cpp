@@ -16,7 +16,7 @@ namespace {
 bool isGraphName(const std::string& name) {
   return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), isNameCharacter);
 }
-constexpr const char* kGraphName = "is no name of a rule or terminal; expected letters, digits and _";
+constexpr const char* kGraphName = "is not a name of a rule or terminal; expected letters, digits and _";
 } // namespace
 
 // ---------------------------------------------------------------- branches
@@ -106,9 +106,9 @@ Value Machine::join(const Value& a, const Value& b, const Joining& how) {
     both->ends.insert(both->ends.end(), y->ends.begin(), y->ends.end());
     spend(both->ends.size());
     const bool oneIsNone = (*x)->ends.empty() || y->ends.empty();
-    if ((*x)->ends.empty()) both->stamps = y->stamps;
+    if ((*x)->ends.empty()) both->versions = y->versions;
     for (uint32_t q = 0; q < kQualityCount && !oneIsNone; ++q)
-      if ((*x)->stamps[q] != y->stamps[q]) both->stamps[q] = graph_.newStamp();
+      if ((*x)->versions[q] != y->versions[q]) both->versions[q] = graph_.newVersion();
     return Shape(std::move(both));
   }
   if (const Items* x = std::get_if<Items>(&a)) {
@@ -166,7 +166,7 @@ void Machine::exitLoop() {
   if (loopBranches_.empty()) {
     fail("'exit' outside of a loop");
   } else if (loopBranches_.back() != branch_) {
-    fail("'exit' depends on a shape; what is repeated until a shape has some size must be a rule that calls itself");
+    fail("'exit' depends on a shape; to repeat until a shape has some size, write a rule that calls itself");
     stopped_ = true; // nothing else may end the loop
   } else {
     leaves_ = true;
@@ -178,7 +178,7 @@ void Machine::exitLoop() {
 Parameter Machine::parameter(const Number& number, const Shape& shape) {
   if (!number.formula) return {kParameterConstant, floatBitsToUint(settle(number.known))};
   for (const Read& read : number.formula->reads)
-    if (read.quality != kNeverChanges && shape->stamps[read.quality] != read.stamp) {
+    if (read.quality != kNeverChanges && shape->versions[read.quality] != read.version) {
       fail("this takes a number that was read in line " + std::to_string(read.place.line) +
            " from another shape, or before the shape was changed; numbers are read from the shape that takes them");
       return {};

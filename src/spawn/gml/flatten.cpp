@@ -61,9 +61,9 @@ Shape Flattener::edgeOf(uint32_t node, uint32_t edge, const Shape& from) {
   auto state = std::make_shared<ShapeState>(*from);
   state->ends = {{node, edge, false}};
   const uint32_t kept = keptBy(nodes_[node].node.op);
-  // What multiplies shapes gives each of its edges stamps of its own.
+  // What multiplies shapes gives each of its edges versions of its own.
   for (uint32_t q = 0; q < kQualityCount; ++q)
-    if (!(kept >> q & 1)) state->stamps[q] = newStamp();
+    if (!(kept >> q & 1)) state->versions[q] = newVersion();
   return state;
 }
 
@@ -124,7 +124,7 @@ Shape Flattener::beginRule(uint32_t rule) {
   auto state = std::make_shared<ShapeState>();
   state->ends = {{rule, 0, true}};
   state->rule = rule;
-  for (uint32_t& stamp : state->stamps) stamp = newStamp();
+  for (uint32_t& version : state->versions) version = newVersion();
   return state;
 }
 

@@ -49,7 +49,7 @@ public:
   Graph& graph() { return graph_; }
   size_t nodeCount() const { return nodes_.size(); }
   bool hasAxiom() const { return !graph_.axioms.empty(); }
-  uint32_t newStamp() { return ++stamps_; }
+  uint32_t newVersion() { return ++stamps_; }
 
   /// The graph of all that was added. Warns of shapes that were made and never used.
   PlacedGraph finish();

@@ -311,7 +311,7 @@ void Machine::store(uint32_t name) {
 bool Machine::isKnown(const Value& value, uint32_t name) {
   if (!std::holds_alternative<Forgotten>(value)) return true;
   return fail("a branch that depends on a shape stored something else in '" + nameText(name) +
-              "': what it holds behind the branch is not known");
+              "': its value after the branch is not known");
 }
 
 /// What the names of a branch stood for outside.

@@ -81,7 +81,7 @@ template <class Function> void known(Machine& m, Arguments& a, Function function
   const float x = std::get<Number>(a[0]).known, y = a.size() > 1 ? std::get<Number>(a[1]).known : 0;
   const double result = function(double(x), double(y));
   if (std::abs(result) <= double(kLargest)) return m.pushNumber(settle(static_cast<float>(result)));
-  m.fail(std::string("this is no number, or becomes too large; ") + kUsableNumbers);
+  m.fail(std::string("this is not a number, or becomes too large; ") + kUsableNumbers);
   m.push(Broken{});
 }
 

@@ -62,7 +62,7 @@ void attribute(Machine& m, Arguments& a) {
                           : row.code == kCodeRotation || row.code == kCodeNormal ? kRotation
                           : row.code == kCodeSeed                                ? kSeed
                                                                                  : kNeverChanges;
-  formula->reads.push_back({quality, quality == kNeverChanges ? 0 : shape->stamps[quality], m.place()});
+  formula->reads.push_back({quality, quality == kNeverChanges ? 0 : shape->versions[quality], m.place()});
   m.push(std::move(a[0]));
   m.push(Number{0, std::move(formula)});
 }
@@ -144,9 +144,9 @@ Shape merged(Machine& m, std::span<const Value> shapes) {
   for (const Value& value : shapes) {
     const Shape& shape = std::get<Shape>(value);
     if (shape->ends.empty()) continue;
-    if (isFirst) all->stamps = shape->stamps, all->rule = shape->rule;
+    if (isFirst) all->versions = shape->versions, all->rule = shape->rule;
     for (uint32_t q = 0; q < kQualityCount; ++q)
-      if (all->stamps[q] != shape->stamps[q]) all->stamps[q] = m.graph().newStamp();
+      if (all->versions[q] != shape->versions[q]) all->versions[q] = m.graph().newVersion();
     isFirst = false;
     all->ends.insert(all->ends.end(), shape->ends.begin(), shape->ends.end());
   }

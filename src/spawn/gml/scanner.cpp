@@ -145,7 +145,7 @@ private:
     if (error == std::errc::result_out_of_range && whole)
       value = digits.find("e-") != std::string_view::npos || digits.find("E-") != std::string_view::npos ? 0 : INFINITY;
     else if (error != std::errc() || !whole)
-      diagnostics_.error(place, "'" + std::string(text.substr(0, 40)) + "' is no number");
+      diagnostics_.error(place, "'" + std::string(text.substr(0, 40)) + "' is not a number");
     if (isUsable(value)) return value;
     diagnostics_.error(place, std::string("this is too large; ") + kUsableNumbers);
     return 0;
@@ -161,8 +161,8 @@ private:
       if (text.empty() || !looksLikeNumber(text) || token.size == 3) {
         diagnostics_.error(place, text.empty() || token.size == 3
                                       ? std::string(expected)
-                                      : "'" + std::string(text.substr(0, 40)) + "' is no number; " + expected +
-                                            "; 'vector2' and 'vector3' make vectors of what is on the stack");
+                                      : "'" + std::string(text.substr(0, 40)) + "' is not a number; " + expected +
+                                            "; 'vector2' and 'vector3' make vectors from the stack");
         while (next_ < text_.size() && at() != ')' && at() != '\n' && at() != '}' && at() != '{') advance();
         if (at() == ')') advance();
         return;

@@ -15,10 +15,10 @@ namespace gpgp::spawn::gml {
 /// What of a shape a formula can read, and operators change separately.
 enum Quality : uint8_t { kPosition, kSize, kRotation, kSeed, kQualityCount, kNeverChanges = kQualityCount };
 
-/// A formula reads a quality as it was when it had this stamp.
+/// A formula reads a quality as it was when it had this version.
 struct Read {
   Quality quality = kPosition;
-  uint32_t stamp = 0;
+  uint32_t version = 0;
   Place place;
 };
 struct Draw {
@@ -48,7 +48,7 @@ struct End {
 };
 struct ShapeState {
   std::vector<End> ends; ///< none: no shape comes here
-  std::array<uint32_t, kQualityCount> stamps{};
+  std::array<uint32_t, kQualityCount> versions{};
   uint32_t branch = 0; ///< the branch on a shape's size in which it may be taken
   uint32_t rule = 0;   ///< of the graph, in whose body it is
 };

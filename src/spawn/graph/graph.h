@@ -4,7 +4,7 @@
 // kNoNode as a target discards the shape.
 #pragma once
 #include "core/result.h"
-#include "spawn/graph/operators.h"
+#include "spawn/graph/operator_info.h"
 
 #include <memory_resource>
 #include <string>

@@ -52,7 +52,7 @@ core::Result<std::pmr::vector<Kernel>> loadKernels(std::span<const std::byte> by
   std::pmr::vector<Kernel> kernels(memory);
   for (std::span<const uint32_t> rest = words; !rest.empty();) {
     const size_t number = kernels.size();
-    if (rest.size() < kHeader || rest[0] != kKernelMagic) return bad(number, "what follows is no kernel");
+    if (rest.size() < kHeader || rest[0] != kKernelMagic) return bad(number, "the data that follows is not a kernel");
     if (rest[1] != kKernelVersion)
       return makeError(
           GPGP_ERROR_INVALID_DATA,

@@ -260,7 +260,7 @@ private:
     }
     if (call.name.substr(0, 12) == "SetAsDynamic") return {buildSetGeometry(call), std::nullopt};
     if (names_.count(call.name))
-      diagnostics_.error(call.place, "'" + call.name + "' is no operator; expected no '(' after it");
+      diagnostics_.error(call.place, "'" + call.name + "' is not an operator; expected no '(' after it");
     else
       reportUnknown(call);
     checkNames(call, true);

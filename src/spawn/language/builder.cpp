@@ -108,7 +108,7 @@ struct GpgpGrammarBuilder_T {
     if (!name) return "the name is NULL";
     const std::string_view text(name);
     if (!text.empty() && std::all_of(text.begin(), text.end(), isNameCharacter)) return {};
-    return quoted(name) + " is no name; expected letters, digits and _";
+    return quoted(name) + " is not a name; expected letters, digits and _";
   }
   bool checkName(const char* name, const char* function) {
     const std::string problem = problemOfName(name);
@@ -281,7 +281,7 @@ private:
     if (problem.empty() && !op)
       problem = "there is no operator " + std::to_string(from.op) + " in this builder";
     else if (problem.empty() && used_[from.op - 1])
-      problem = "this operator is already used elsewhere; what is shared must be a rule";
+      problem = "this operator is already used elsewhere; to share it, make it a rule";
     else if (problem.empty())
       problem = op->problem;
     if (op) used_[from.op - 1] = true;

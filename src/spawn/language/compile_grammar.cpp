@@ -115,10 +115,10 @@ GpgpResult graphOf(std::span<const GpgpGrammarSource> sources, bool linked, Tree
     else
       tree = source.builder ? treeOf(*source.builder, diagnostics) : parse(text, diagnostics);
     if (linked && !alias.empty() && alias != name)
-      diagnostics.error({}, "the alias '" + alias + "' is no name; expected letters, digits and _, not digits alone");
+      diagnostics.error({}, "the alias '" + alias + "' is not a name; expected letters, digits and _, not only digits");
     const auto [other, isNew] = files.try_emplace(name, file);
     if (linked && name.empty())
-      diagnostics.error({}, "this grammar has no name; expected one, as of a file: what it is linked with calls it so");
+      diagnostics.error({}, "this grammar has no name; expected one, such as a file name: linked grammars refer to it");
     else if (!isNew)
       diagnostics.error({}, "'" + name + "' is also the name of " + other->second +
                                 "; expected another file name, or an alias: linked grammars are told apart by them");

@@ -125,7 +125,7 @@ ExpressionCompiler::Code ExpressionCompiler::call(const Expression& e) {
     const bool isLast = name == std::end(kAttributes)[-1].name;
     expected.append(expected.empty() ? "" : isLast ? " or " : ", ").append(name);
   });
-  diagnostics_.error(e.place, "'" + e.name + "' is no function; expected " + expected + suggestionFor(e.name, true));
+  diagnostics_.error(e.place, "'" + e.name + "' is not a function; expected " + expected + suggestionFor(e.name, true));
   for (const Expression& argument : e.arguments)
     if (argument.kind != ExpressionKind::name) compile(argument); // a name may be an axis
   return number(0);

@@ -1,6 +1,6 @@
 // How the operators of PGA-shape are written: by the names of the table, and in some ways that graphs do not know.
 #pragma once
-#include "spawn/graph/operators.h"
+#include "spawn/graph/operator_info.h"
 
 #include <algorithm>
 #include <array>

@@ -363,7 +363,7 @@ private:
           diagnostics_.error(m.place, "the sub-system '" + name + "' has " + std::to_string(called->parameters.size()) +
                                           " parameters; found " + std::to_string(m.arguments.size()));
         } else if (nesting == kMostExpansion) {
-          diagnostics_.error(m.place, "the axioms of sub-systems stand in each other too deep, or without end");
+          diagnostics_.error(m.place, "the axioms of sub-systems are nested too deep, or without end");
         } else if (called->axiom) {
           Scope inner;
           for (size_t i = 0; i < m.arguments.size(); ++i)

@@ -45,7 +45,7 @@ core::Result<void> checkContents(const Drawing& d, std::pmr::memory_resource* me
     // canvas sizes its table by that.
     const size_t most = std::min(d.curves.size(), 2 * (i + 1));
     if (p.left >= most || p.right >= most || p.path >= d.paths.size() || p.path < path)
-      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: patch %zu refers to what is not there", i);
+      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: patch %zu refers to something that does not exist", i);
     if (!sane(p.top) || !sane(p.bottom) || !sane(p.x0) || !sane(p.x1) || !(p.top < p.bottom) || p.item)
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: patch %zu is not a patch", i);
     path = p.path;
@@ -56,14 +56,14 @@ core::Result<void> checkContents(const Drawing& d, std::pmr::memory_resource* me
   for (size_t i = 0; i < d.paths.size(); ++i)
     if (d.paths[i].paint > d.paints.size() || d.paths[i].clip > d.clips.size() || d.paths[i].layer > d.layers.size() ||
         d.paths[i].flags > shader::kForeground)
-      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: path %zu refers to what is not there", i);
+      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: path %zu refers to something that does not exist", i);
   for (size_t i = 0; i < d.paints.size(); ++i) {
     const PaintRecord& p = d.paints[i];
     const bool image = p.kind == shader::kPaintImage;
     if (image && (p.firstStop >= GPGP_MAX_IMAGES || p.stopCount || p.spread || p.flags))
       return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu is not an image", i);
     if (!image && (!p.stopCount || p.firstStop > d.stops.size() || p.stopCount > d.stops.size() - p.firstStop))
-      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu refers to what is not there", i);
+      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: paint %zu refers to something that does not exist", i);
     bool good = p.kind <= shader::kPaintImage && p.spread <= shader::kSpreadReflect &&
                 p.flags <= shader::kInterpolateSrgb && p.startRadius >= 0 && std::isfinite(p.startRadius) &&
                 std::isfinite(p.tangent) && p.slices == 0;

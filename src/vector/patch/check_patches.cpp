@@ -114,7 +114,8 @@ core::Result<void> checkPatches(std::span<const uvec4> words, uint32_t paths, st
   float largest = 0;
   for (uint32_t i = 0; i < paths; ++i) {
     if (!checker.path(i))
-      return makeError(GPGP_ERROR_INVALID_DATA, "baked drawing: the patches of path %u refer to what is not there", i);
+      return makeError(GPGP_ERROR_INVALID_DATA,
+                       "baked drawing: the patches of path %u refer to something that does not exist", i);
     const float smallest = appendQuads(words, i, quads);
     const uvec4* record = &words[PatchReader::kPatchHeader + i * PatchReader::kPatchPathSize];
     if (record[5] != uvec4(std::bit_cast<uint32_t>(smallest), 0, 0, 0))

@@ -47,8 +47,8 @@ public:
     if (!content) return content.error();
     drawing_.plan.sequences[0] = *content;
     if (!checkPlan(drawing_.plan, drawing_.paths.size(), memory_))
-      return makeError(GPGP_ERROR_UNSUPPORTED, "groups: more than %u layers in each other, or %u in all",
-                       GPGP_MAX_LAYER_DEPTH, kMaxLayerNodes);
+      return makeError(GPGP_ERROR_UNSUPPORTED, "groups: more than %u nested layers, or %u in all", GPGP_MAX_LAYER_DEPTH,
+                       kMaxLayerNodes);
     return {};
   }
 
@@ -122,7 +122,7 @@ private:
   /// Runs and layers of paths inside a group (0: none).
   Result<LayerSequence> addSequence(std::span<const uint32_t> paths, uint32_t owner, uint32_t depth) {
     if (depth > GPGP_MAX_LAYER_DEPTH)
-      return makeError(GPGP_ERROR_UNSUPPORTED, "groups[%u]: more than %u layers in each other", owner ? owner - 1 : 0,
+      return makeError(GPGP_ERROR_UNSUPPORTED, "groups[%u]: more than %u nested layers", owner ? owner - 1 : 0,
                        GPGP_MAX_LAYER_DEPTH);
     std::pmr::vector<LayerToken> tokens(memory_);
     for (size_t i = 0; i < paths.size();) {
@@ -246,8 +246,7 @@ private:
       if (g.clip) {
         const uint32_t depth = nearest.clip ? drawing_.clips[nearest.clip - 1].depth + 1 : 1;
         if (depth > shader::kMaxClipDepth)
-          return makeError(GPGP_ERROR_UNSUPPORTED, "groups[%u]: more than %u clips in each other", i,
-                           shader::kMaxClipDepth);
+          return makeError(GPGP_ERROR_UNSUPPORTED, "groups[%u]: more than %u nested clips", i, shader::kMaxClipDepth);
         drawing_.clips.push_back({static_cast<uint32_t>(drawing_.paths.size()), g.clipCount, nearest.clip, depth});
         nearest.clip = static_cast<uint32_t>(drawing_.clips.size());
         for (uint32_t k = 0; k < g.clipCount; ++k)

@@ -44,10 +44,10 @@ const char* wrongStep(const LayerStep& s) {
     if (!inRange(v[0], 0, 65536) || !inRange(v[1], 0, 65536)) return "the standard deviation must be 0 to 65536";
     break;
   case GPGP_FILTER_BLEND:
-    if (!mode(GPGP_BLEND_PLUS_LIGHTER)) return "mode is no GpgpBlendMode";
+    if (!mode(GPGP_BLEND_PLUS_LIGHTER)) return "mode is not a GpgpBlendMode";
     return nullptr;
   case GPGP_FILTER_COMPOSITE:
-    if (!mode(GPGP_OPERATOR_ARITHMETIC)) return "mode is no GpgpFilterOperator";
+    if (!mode(GPGP_OPERATOR_ARITHMETIC)) return "mode is not a GpgpFilterOperator";
     return nullptr;
   case GPGP_FILTER_MORPHOLOGY:
     if (!inRange(v[0], 0, 16384) || !inRange(v[1], 0, 16384)) return "the radius must be 0 to 16384";
@@ -58,7 +58,7 @@ const char* wrongStep(const LayerStep& s) {
     if (!isWhole(v[2], 0, v[0] - 1) || !isWhole(v[3], 0, v[1] - 1)) return "the target lies outside of the kernel";
     if (v[4] == 0) return "the divisor is 0";
     if (!inRange(v[7], -1e6f, 1e6f) || !inRange(v[8], -1e6f, 1e6f)) return "a distance must be -1e6 to 1e6";
-    if (!mode(GPGP_EDGE_WRAP)) return "mode is no GpgpFilterEdge";
+    if (!mode(GPGP_EDGE_WRAP)) return "mode is not a GpgpFilterEdge";
     if (s.entryCount != kernel) return "table does not hold as many numbers as the kernel has";
     return nullptr;
   case GPGP_FILTER_COMPONENT_TRANSFER:
@@ -77,7 +77,7 @@ const char* wrongStep(const LayerStep& s) {
     if (!isColor(v + 2)) return "values are not a colour";
     if (s.kind == GPGP_FILTER_SPECULAR_LIGHTING && !inRange(v[5], 0, 1024)) return "the exponent must be 0 to 1024";
     if (!inRange(v[14], 0, 1e6f) || !inRange(v[15], 0, 1e6f)) return "a distance must be 0 to 1e6";
-    if (!mode(GPGP_LIGHT_SPOT)) return "mode is no GpgpFilterLight";
+    if (!mode(GPGP_LIGHT_SPOT)) return "mode is not a GpgpFilterLight";
     return nullptr;
   case GPGP_FILTER_GROUP:
     if (!s.sequence) return "group is 0";
@@ -236,7 +236,7 @@ Result<void> checkLayer(const GpgpLayer& layer, const char* name, uint32_t group
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.filter[%u].table is NULL, but tableCount is %u", name, i,
                        s.tableCount);
     if (s.input >= GPGP_FILTER_FIRST_STEP + i || s.input2 >= GPGP_FILTER_FIRST_STEP + i)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.filter[%u]: an input is no earlier step", name, i);
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.filter[%u]: an input is not an earlier step", name, i);
     if (s.group && !later(s.group))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s.filter[%u].group is %u: no later group", name, i, s.group);
     LayerStep step{s.kind, s.mode, s.input, s.input2, s.encoding, {}, {}, 0, s.tableCount, s.group};
@@ -266,7 +266,7 @@ Result<void> checkPlan(const LayerPlan& plan, size_t paths, std::pmr::memory_res
   if (next != paths || plan.sequences.empty()) return bad("a path is in no run");
   for (const LayerToken& token : plan.tokens)
     if (token.layer > 1 || token.index >= (token.layer ? plan.nodes.size() : plan.runs.size()))
-      return bad("a sequence refers to what is not there");
+      return bad("a sequence refers to something that does not exist");
   for (const LayerSequence& s : plan.sequences)
     if (!range(s.firstToken, s.tokenCount, plan.tokens.size())) return bad("a sequence is not there");
   uint64_t nextStep = 0;
@@ -274,7 +274,7 @@ Result<void> checkPlan(const LayerPlan& plan, size_t paths, std::pmr::memory_res
     if (!range(n.content.firstToken, n.content.tokenCount, plan.tokens.size()) || n.clip > plan.runs.size() ||
         n.mask > plan.sequences.size() || n.filtered > 1 || !range(n.firstStep, n.stepCount, plan.steps.size()) ||
         (n.stepCount && (!n.filtered || n.firstStep != nextStep)))
-      return bad("a layer refers to what is not there");
+      return bad("a layer refers to something that does not exist");
     nextStep += n.stepCount;
     if (wrongNode(n)) return bad("a layer is out of range");
     const auto steps = plan.stepsOf(n);
@@ -283,14 +283,14 @@ Result<void> checkPlan(const LayerPlan& plan, size_t paths, std::pmr::memory_res
       if (s.input >= GPGP_FILTER_FIRST_STEP + i || s.input2 >= GPGP_FILTER_FIRST_STEP + i ||
           s.sequence > plan.sequences.size() || !range(s.firstEntry, s.entryCount, plan.tables.size()) ||
           s.firstEntry % 4 != 0)
-        return bad("a filter refers to what is not there");
+        return bad("a filter refers to something that does not exist");
       if (wrongStep(s)) return bad("a filter's step is out of range");
     }
   }
   if (nextStep != plan.steps.size()) return bad("a step is in no filter");
   if (plan.tables.size() % 4 != 0) return bad("a filter's table has an end that shaders do not read");
   if (!sane(plan.tables)) return bad("a filter's table is not finite");
-  if (!Measure(plan, memory).good()) return bad("its layers are too deep in each other, too many, or not in it");
+  if (!Measure(plan, memory).good()) return bad("its layers are nested too deep, too many, or not in it");
   return {};
 }
 

@@ -245,7 +245,7 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
   if (!drawing.plan().empty()) return addLayered(drawing, firstImage);
   if (plain) beginPlain();
   if (clip.layer && tables_.layers[clip.layer - 1].depth + drawing.layerDepth() > shader::kMaxLayerDepth)
-    return wrong(GPGP_ERROR_UNSUPPORTED, ": with those of its drawing, more than %u groups fade in each other",
+    return wrong(GPGP_ERROR_UNSUPPORTED, ": with those of its drawing, more than %u nested groups fade",
                  shader::kMaxLayerDepth);
   const uint32_t source = addSource(map, opacity, firstImage, clip);
   if (source == kNone && !full_) return {}; // covers nothing

@@ -178,7 +178,7 @@ Result<Layout::Moved> Layout::move(uint32_t offset, bool trailing, GpgpCaretMove
       }
     }
     break;
-  default: return makeError(GPGP_ERROR_INVALID_ARGUMENT, "move is %d, which is no GpgpCaretMove", move);
+  default: return makeError(GPGP_ERROR_INVALID_ARGUMENT, "move is %d, which is not a GpgpCaretMove", move);
   }
   return Moved{text_.byteOf[at], ends};
 }

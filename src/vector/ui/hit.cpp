@@ -217,7 +217,8 @@ Result<bool> hitList(const List& list, const Map& map, double x, double y, GpgpH
     } else {
       const core::Object* asset = command.asset();
       if (!asset)
-        return makeError(GPGP_ERROR_INVALID_HANDLE, ".list, entry %u: what it shows was destroyed", command.firstEntry);
+        return makeError(GPGP_ERROR_INVALID_HANDLE, ".list, entry %u: its drawing or glyph set was destroyed",
+                         command.firstEntry);
       if (command.kind == List::Kind::text) {
         const auto glyphs = list.glyphs().subspan(command.first, command.count);
         const auto hits = hitGlyphs(static_cast<const GlyphSet&>(*asset), glyphs, p, hit);

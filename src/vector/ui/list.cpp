@@ -94,7 +94,7 @@ void List::reset() {
 
 Result<void> List::checkDepth() const {
   if (stack_.size() < GPGP_MAX_LIST_DEPTH) return {};
-  return makeError(GPGP_ERROR_INVALID_ARGUMENT, "more than %d pushes in each other (GPGP_MAX_LIST_DEPTH)",
+  return makeError(GPGP_ERROR_INVALID_ARGUMENT, "more than %d nested pushes (GPGP_MAX_LIST_DEPTH)",
                    GPGP_MAX_LIST_DEPTH);
 }
 
@@ -132,7 +132,7 @@ Result<void> List::pushClip(const float* box, const float* radii) {
   const Space& space = state_.space;
   const uint32_t depth = space.clip ? clips_[space.clip - 1].depth + 1 : 1;
   if (depth > GPGP_MAX_CLIP_DEPTH)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "more than %d clips in each other (GPGP_MAX_CLIP_DEPTH)",
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "more than %d nested clips (GPGP_MAX_CLIP_DEPTH)",
                      GPGP_MAX_CLIP_DEPTH);
   makeRoom(clips_);
   const auto x = [&](float v) { return static_cast<float>(space.scale * static_cast<double>(v) + space.x); };
@@ -166,7 +166,7 @@ Result<void> List::pushGroup(float opacity) {
   if (auto ok = checkOpacity(opacity); !ok) return ok;
   const uint32_t parent = state_.space.group, depth = parent ? groups_[parent - 1].depth + 1 : 1;
   if (depth > shader::kMaxLayerDepth)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "more than %u groups in each other (GPGP_MAX_OPACITY_DEPTH)",
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "more than %u nested groups (GPGP_MAX_OPACITY_DEPTH)",
                      shader::kMaxLayerDepth);
   makeRoom(groups_);
   groups_.push_back({opacity * state_.opacity, parent, depth});
@@ -190,7 +190,7 @@ void List::beginPicture(Kind what, uint32_t index) {
 Result<void> List::pushLayer(const GpgpListLayer& layer) {
   if (auto ok = checkOpacity(layer.opacity); !ok) return ok;
   if (state_.pictures == GPGP_MAX_LAYER_DEPTH)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "more than %d layers and masks in each other (GPGP_MAX_LAYER_DEPTH)",
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "more than %d nested layers and masks (GPGP_MAX_LAYER_DEPTH)",
                      GPGP_MAX_LAYER_DEPTH);
   if (state_.space.group)
     return makeError(GPGP_ERROR_UNSUPPORTED, "a layer inside a group; push a layer in the group's place");
@@ -223,7 +223,7 @@ Result<void> List::pushLayer(const GpgpListLayer& layer) {
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "layer.maskInverted is for GPGP_MASK_ALPHA");
   if (!within(layer.bounds, 4, -kMaxCoordinate, kMaxCoordinate) || layer.bounds[2] < layer.bounds[0] ||
       layer.bounds[3] < layer.bounds[1])
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "layer.bounds is no box within 1e7");
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "layer.bounds is not a box within 1e7");
 
   makeRoom(layers_);
   makeRoom(commands_);
@@ -266,7 +266,7 @@ Result<void> List::pushLayer(const GpgpListLayer& layer) {
 Result<uint32_t> List::pushMask() {
   if (auto ok = checkDepth(); !ok) return ok.error();
   if (state_.pictures == GPGP_MAX_LAYER_DEPTH)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "more than %d layers and masks in each other (GPGP_MAX_LAYER_DEPTH)",
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "more than %d nested layers and masks (GPGP_MAX_LAYER_DEPTH)",
                      GPGP_MAX_LAYER_DEPTH);
   makeRoom(masks_);
   makeRoom(commands_);
@@ -306,7 +306,7 @@ Result<uint32_t> List::addImagePaint(const GpgpListImage& image, const vec4& box
                      GPGP_MAX_IMAGES);
   const float* s = image.source;
   if (!within(s, 4, -1e6f, 1e6f))
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "image.source holds what is no number within 1e6");
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "image.source holds something that is not a number within 1e6");
   const float* from = image.sourceBorders;
   const float width = box.z - box.x, height = box.w - box.y;
   float to[4];
@@ -320,7 +320,7 @@ Result<uint32_t> List::addImagePaint(const GpgpListImage& image, const vec4& box
     tile[k] = image.tileSize[k] * static_cast<float>(state_.space.scale);
   }
   if (!within(tile, 2, 0, 1e30f))
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "image.tileSize holds what is no number from 0 on");
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "image.tileSize holds something that is not a number from 0 on");
   const float extent[2] = {std::abs(s[2] - s[0]), std::abs(s[3] - s[1])};
   for (int k = 0; k < 2; ++k)
     if (from[k] + from[k + 2] > extent[k] * 1.000001f)
@@ -398,7 +398,7 @@ Result<uint32_t> List::addPaint(const GpgpListShape& shape) {
 Result<void> List::addShape(const GpgpListShape& from) {
   const Space& space = state_.space;
   if (!within(from.box, 4, -kMaxCoordinate, kMaxCoordinate))
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".box holds what is no number within 1e7");
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".box holds something that is not a number within 1e7");
   if (!within(&from.width, 1, 0, kMaxCoordinate))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".width is %g; expected 0 to 1e7", static_cast<double>(from.width));
   if (!inColorRange(from.color)) return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".color is out of range");
@@ -419,7 +419,7 @@ Result<void> List::addShape(const GpgpListShape& from) {
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".box: right or bottom lies below left or top");
     if (from.kind == GPGP_LIST_RECTANGLE) {
       if (!within(from.radii, 4, 0, kMaxCoordinate))
-        return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".radii hold what is no number from 0 to 1e7");
+        return makeError(GPGP_ERROR_INVALID_ARGUMENT, ".radii hold something that is not a number from 0 to 1e7");
       const float* r = from.radii;
       shape.record = roundBox(box, {r[0] * scale, r[1] * scale, r[2] * scale, r[3] * scale}, 1);
     } else if (from.kind == GPGP_LIST_ELLIPSE) {

@@ -84,7 +84,7 @@ Result<void> List::addTriangles(const GpgpListTriangles& from) {
                       inside(placed(v.x, space.x), kMaxCoordinate) && inside(placed(v.y, space.y), kMaxCoordinate);
     if (!here || (textured && !(inside(v.u, 1e6f) && inside(v.v, 1e6f))))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "vertices[%u]: %s", i,
-                       here ? "u or v is no number within 1e6" : "x or y is no number within 1e7");
+                       here ? "u or v is not a number within 1e6" : "x or y is not a number within 1e7");
   }
   if (corners / 3 > UINT32_MAX - shapes_.size())
     return makeError(GPGP_ERROR_UNSUPPORTED, "a list holds fewer than 2^32 shapes and triangles");

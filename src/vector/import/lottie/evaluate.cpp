@@ -128,7 +128,7 @@ void Evaluator::precomp(const Layer& l, double frame, const Affine& map, Scope s
   if (l.asset >= animation_.compositions.size()) return;
   if (++scope.depth > limits_.depth)
     return reporter_.say(GPGP_SEVERITY_WARNING, GPGP_ERROR_UNSUPPORTED, {},
-                         "compositions are more than 64 deep in each other: the innermost are left out", kFunction);
+                         "compositions are nested more than 64 deep: the innermost are left out", kFunction);
   const double inner = l.timeRemap.value.empty() && !l.timeRemap.animated()
                            ? (frame - l.start) / l.stretch
                            : l.timeRemap.number(frame) * animation_.rate;
@@ -155,8 +155,7 @@ void Evaluator::precomp(const Layer& l, double frame, const Affine& map, Scope s
   if (inside) return;
   if (scope.clips > limits_.clips)
     return reporter_.say(GPGP_SEVERITY_WARNING, GPGP_ERROR_UNSUPPORTED, {},
-                         "more than 15 clips in each other: the innermost compositions and masks do not clip",
-                         kFunction);
+                         "more than 15 nested clips: the innermost compositions and masks do not clip", kFunction);
   result_.groups[group - 1].clipped = true;
   result_.groups[group - 1].clip.push_back(pathOf(placed));
 }
@@ -194,8 +193,7 @@ void Evaluator::layer(const Composition& c, size_t index, double frame, const Af
   openMasks(masks, scope, wraps);
   if (scope.effects > limits_.effects) {
     reporter_.say(GPGP_SEVERITY_WARNING, GPGP_ERROR_UNSUPPORTED, {},
-                  "more than 28 effects, masks and opacities in each other: the innermost layers are left out",
-                  kFunction);
+                  "more than 28 nested effects, masks and opacities: the innermost layers are left out", kFunction);
     return undo(before);
   }
   content(l, frame, map, scope);

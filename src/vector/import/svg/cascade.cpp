@@ -214,7 +214,7 @@ std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const Surface
     reporter_.warn(document_.place(node),
                    who + " refers to another file, " + shown + ", which is not supported; " + instead);
   else if (name.empty())
-    reporter_.ignored(document_.place(node), who + " refers to " + shown + ", which is not there; " + instead);
+    reporter_.ignored(document_.place(node), who + " refers to " + shown + ", which does not exist; " + instead);
   else
     reporter_.warn(document_.place(node),
                    who + " refers to a <" + std::string(name.substr(0, 40)) + ">, which is not supported; " + instead);

@@ -72,7 +72,7 @@ void Importer::clip(pugi::xml_node node, std::string_view name, State& state, co
     const std::string shown = std::string("'") + value.substr(0, 60) + "'";
     const std::string reference = referenceOf(value);
     const pugi::xml_node target = reference.empty() ? pugi::xml_node() : document_.find(reference);
-    if (!target || document_.name(target) != "clipPath") return without(shown + " is no clipPath of this file");
+    if (!target || document_.name(target) != "clipPath") return without(shown + " is not a clipPath of this file");
     if (std::find(targets.begin(), targets.end(), target) != targets.end() ||
         std::find(used_.begin(), used_.end(), target) != used_.end())
       return without(shown + " contains itself");

@@ -289,7 +289,7 @@ std::vector<FilterFunction> Importer::filtersOf(pugi::xml_node node, const State
     if (!f.reference.starts_with('#'))
       reporter_.warn(document_.place(node), shown + "of another file is not supported" + rest);
     else if (!target || document_.name(target) != "filter")
-      reporter_.ignored(document_.place(node), shown + (target ? "is no filter" : "is not there") + rest);
+      reporter_.ignored(document_.place(node), shown + (target ? "is not a filter" : "does not exist") + rest);
     else if (std::find(used_.begin(), used_.end(), target) != used_.end())
       reporter_.ignored(document_.place(node), shown + "contains itself" + rest);
     else

@@ -47,18 +47,18 @@ const Importer::GradientChain& Importer::chainOf(pugi::xml_node gradient) {
     if (!attribute) return chain;
     const auto noTemplate = [&](const std::string& why) {
       reporter_.ignored(document_.place(attribute, 0), element(gradient) + " refers to '" +
-                                                           std::string(href.substr(0, 60)) + "', which is " + why +
+                                                           std::string(href.substr(0, 60)) + "', which " + why +
                                                            "; ignored");
     };
     if (!href.empty() && href[0] != '#') return chain.otherFile = href, chain;
     const pugi::xml_node next = document_.find(href);
-    if (!next) return noTemplate("not there"), chain;
+    if (!next) return noTemplate("does not exist"), chain;
     const std::string_view name = document_.name(gradient), kind = oneOf(name, kGradients) ? "gradient" : name;
     if (kind == "gradient" ? !oneOf(document_.name(next), kGradients) : document_.name(next) != name)
-      return noTemplate("no " + std::string(kind) + " but a " + element(next)), chain;
+      return noTemplate("is not a " + std::string(kind) + " but a " + element(next)), chain;
     if (std::find(chain.gradients.begin(), chain.gradients.end(), next) != chain.gradients.end())
-      return noTemplate("one of its own templates"), chain;
-    if (chain.gradients.size() == kLongest) return noTemplate("one more than 32 after each other"), chain;
+      return noTemplate("is one of its own templates"), chain;
+    if (chain.gradients.size() == kLongest) return noTemplate("is one more than 32 in a row"), chain;
     gradient = next;
   }
 }

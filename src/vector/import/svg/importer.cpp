@@ -64,7 +64,7 @@ void Importer::ignored(pugi::xml_node node, const Place& place, std::string_view
 
 void Importer::noLength(pugi::xml_node node, const Place& place, std::string_view name, std::string_view value) {
   hasUnsupported(value) ? ignored(node, place, name, value)
-                        : reporter_.error(place, valueOf(node, name, value) + "no length");
+                        : reporter_.error(place, valueOf(node, name, value) + "not a length");
 }
 
 AspectRatio Importer::aspectRatio(pugi::xml_node node) {
@@ -101,8 +101,7 @@ core::Result<Imported> Importer::run() {
 std::optional<Importer::State> Importer::enter(pugi::xml_node node, const State& parent) {
   if (parent.depth >= limits_.depth) {
     reporter_.error(document_.place(node),
-                    "elements are nested deeper than " + std::to_string(limits_.depth) +
-                        "; what is inside is not drawn",
+                    "elements are nested deeper than " + std::to_string(limits_.depth) + "; its contents are not drawn",
                     GPGP_ERROR_UNSUPPORTED);
     return std::nullopt;
   }
@@ -188,7 +187,7 @@ void Importer::visitUse(pugi::xml_node node, const State& state) {
   if (!target) {
     const bool outside = href && href.value()[0] != '#' && href.value()[0] != '\0';
     outside ? reporter_.warn(place, "<use> of another file, " + shown + ", is not supported")
-            : reporter_.error(place, "<use> refers to " + shown + ", which is not there");
+            : reporter_.error(place, "<use> refers to " + shown + ", which does not exist");
     return;
   }
   bool inside = std::find(used_.begin(), used_.end(), target) != used_.end();
@@ -308,7 +307,7 @@ void Importer::reportUnsupported(pugi::xml_node node, std::string_view name, con
     bool is;
     const char* what;
   } features[] = {{style.unsupportedEffect, "vector-effect other than non-scaling-stroke"},
-                  {isShape && style.mixesLinear && isFaint, "color-interpolation of what is painted, linearRGB,"}};
+                  {isShape && style.mixesLinear && isFaint, "color-interpolation linearRGB of a painted element"}};
   for (const auto& f : features)
     if (f.is)
       reporter_.warn(document_.place(node),

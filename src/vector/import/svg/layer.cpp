@@ -130,8 +130,8 @@ pugi::xml_node Importer::maskOf(pugi::xml_node from, const std::string& value) {
                    "mask '" + value.substr(0, 60) + "' is not supported: " + element(from) + " is drawn without it");
     return {};
   }
-  if (!target) return without("is not there");
-  if (document_.name(target) != "mask") return without("is no mask");
+  if (!target) return without("does not exist");
+  if (document_.name(target) != "mask") return without("is not a mask");
   if (std::find(used_.begin(), used_.end(), target) != used_.end()) return without("contains itself");
   return target;
 }

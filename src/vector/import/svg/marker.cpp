@@ -135,8 +135,8 @@ bool Importer::readMarker(const std::string& value, pugi::xml_node node, const S
     isError ? reporter_.ignored(document_.place(node), text) : reporter_.warn(document_.place(node), text);
     return false;
   };
-  if (reference.empty()) return refused("is no <marker> of this file", false);
-  if (!target) return refused("is not there", true);
+  if (reference.empty()) return refused("is not a <marker> of this file", false);
+  if (!target) return refused("does not exist", true);
   if (document_.name(target) != "marker") return refused("is a " + element(target), true);
   if (std::find(used_.begin(), used_.end(), target) != used_.end()) return refused("contains itself", true);
   marker.node = target;

@@ -211,9 +211,9 @@ void Importer::FilterReader::convolveMatrix(Primitive& p) {
                y = number(p.node, "targetY", std::floor(order[1] / 2));
   if (!(x >= 0 && x < order[0] && x == std::floor(x))) return wrong("targetX");
   if (!(y >= 0 && y < order[1] && y == std::floor(y))) return wrong("targetY");
-  constexpr std::string_view edges[] = {"none", "duplicate", "wrap"}, truths[] = {"false", "true"};
+  constexpr std::string_view edges[] = {"none", "duplicate", "wrap"}, booleans[] = {"false", "true"};
   const int32_t edge = choice(p.node, "edgeMode", edges, GPGP_EDGE_DUPLICATE),
-                keeps = choice(p.node, "preserveAlpha", truths, 0);
+                keeps = choice(p.node, "preserveAlpha", booleans, 0);
   if (p.node.attribute("kernelUnitLength")) unsupported(p.node, "kernelUnitLength");
   const double bias = number(p.node, "bias", 0);
   GpgpFilterStep& step = add(GPGP_FILTER_CONVOLVE_MATRIX, p.region, p.encoding,
@@ -340,7 +340,7 @@ void Importer::FilterReader::image(Primitive& p) {
                                                                        why + "; it shows nothing");
       transparent(p);
     };
-    if (!referred) return wrong("is not there");
+    if (!referred) return wrong("does not exist");
     bool inside = std::find(importer.used_.begin(), importer.used_.end(), referred) != importer.used_.end();
     for (pugi::xml_node up = node; up && !inside; up = up.parent()) inside = up == referred;
     if (inside) return wrong("contains itself");

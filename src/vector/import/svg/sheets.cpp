@@ -167,7 +167,7 @@ void Importer::parseSheet(std::string_view text, std::string_view folder, const 
 
 Importer::Read Importer::readBeside(std::string_view href, std::string_view folder, size_t limit, std::string& path,
                                     std::string& bytes, const std::function<bool()>& isWanted) {
-  if (href.empty() || href[0] == '#') return {"is no file"};
+  if (href.empty() || href[0] == '#') return {"is not a file"};
   if (hasScheme(href) || href.starts_with("//")) return {"is not beside the drawing, and other places are not read"};
   if (href[0] == '/') return {"has an absolute path, and only paths from the drawing's folder are read"};
   const std::string plain = percentDecoded(href.substr(0, href.find_first_of("?#")));

@@ -168,7 +168,7 @@ void StyleSheet::readAtRule(std::string_view name, std::string_view prelude, std
     if (!reading.importsCount || reading.depth)
       return reporter.ignored(place, rule + " does not stand before all others; ignored");
     const auto [uri, media] = uriAt(prelude);
-    if (uri.empty()) return reporter.ignored(place, rule + " has " + shown + ", which is no address; ignored");
+    if (uri.empty()) return reporter.ignored(place, rule + " has " + shown + ", which is not an address; ignored");
     const std::string lower = lowered(media);
     const bool isLayer = lower.starts_with("layer") || lower.find("supports(") != lower.npos;
     const Media is = isLayer ? Media::Unknown : evaluateMedia(media);
@@ -189,8 +189,8 @@ void StyleSheet::readAtRule(std::string_view name, std::string_view prelude, std
   if (!isWord(name, "media")) return reporter.warn(place, rule + " is not supported");
   const Media is = evaluateMedia(prelude);
   if (is == Media::Unknown || reading.depth >= kMaxDepth)
-    return reporter.warn(place, rule + " has the condition " + shown +
-                                    ", which is not supported: what is in it does not count");
+    return reporter.warn(place,
+                         rule + " has the condition " + shown + ", which is not supported: its contents are ignored");
   if (is == Media::No) return;
   ++reading.depth;
   readRules(block, blockPlace, reading);

@@ -182,7 +182,7 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
   };
   if (document_.name(node) == "tref") { // SVG 1.1, 10.6: all characters of another element
     const pugi::xml_node target = document_.find(trim(hrefOf(node).value()));
-    if (!target) reporter_.ignored(document_.place(node), "<tref> refers to what is not there");
+    if (!target) reporter_.ignored(document_.place(node), "<tref> refers to an element that does not exist");
     std::string all;
     for (pugi::xml_node at = target; at; ++steps_) {
       if (at.type() == pugi::node_pcdata || at.type() == pugi::node_cdata) all += at.value();
@@ -250,7 +250,7 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
       const std::string_view kind = target ? document_.name(target) : std::string_view();
       if (!oneOf(kind, kShapes)) {
         reporter_.ignored(document_.place(child), "<textPath> refers to '" + std::string(href.substr(0, 60)) +
-                                                      "', which is no shape of this file; it is not drawn");
+                                                      "', which is not a shape of this file; it is not drawn");
         continue;
       }
       for (const char* unsupported : {"side", "method", "path"})

@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# tests/hardware.sh changed, in a small repository of its own: no run on record, the same shaders, and shaders that have
+# changed since, committed or not.
+#
+#   hardware_changed_test.sh SOURCE_DIR
+set -euo pipefail
+command -v git >/dev/null || { echo "skipped: git is missing" >&2; exit 77; }
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+mkdir -p "$scratch"/{tests,docs/results,shaders/core,src/{core,spawn,vector,visibility}}
+cp "$1/tests/hardware.sh" "$scratch/tests/"
+cd "$scratch"
+for folder in shaders/core src/core src/spawn src/vector src/visibility; do echo one >"$folder/file"; done
+commit() {
+  git add -A
+  git -c user.name=test -c user.email=test@example.org -c commit.gpgsign=false commit -qm "$1"
+}
+git -c init.defaultBranch=main init -q
+commit one
+# expect WORDS: in what the script says
+expect() {
+  local said
+  said=$(tests/hardware.sh changed)
+  [[ $said == *"$1"* ]] || { echo "FAILED: expected '$1', but it says: $said" >&2; exit 1; }
+}
+
+expect "No whole run on hardware is recorded"
+printf '{\n "device": "Some GPU",\n "driver": "1",\n "commit": "abc",\n "hash": "%s",\n "date": "2026-01-02",\n "tests": {}\n}\n' \
+  "$(tests/hardware.sh hash)" >docs/results/hardware.json
+expect "are those of the last run on hardware (Some GPU, 2026-01-02, commit abc)"
+echo other >README.md
+commit "nothing that a device runs"
+expect "are those of"
+echo two >shaders/core/file
+expect "have CHANGED since the last run on hardware (Some GPU, 2026-01-02, commit abc)"
+commit two
+expect "have CHANGED since"
+git checkout -q HEAD~1 -- shaders
+commit "as before"
+expect "are those of"
+echo two >src/vector/file
+commit "how shaders are recorded"
+expect "have CHANGED since"
+echo "7 cases"
