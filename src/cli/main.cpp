@@ -54,6 +54,12 @@ std::string unknownOption(const CLI::App& command, int argc, char** argv) {
   return {};
 }
 
+/// The last line on standard error of a command that failed. errorsShown: which lines before it say what failed.
+void say(const std::string& command, const std::string& failure, size_t errorsShown) {
+  const std::string count = std::to_string(errorsShown) + (errorsShown == 1 ? " error" : " errors");
+  std::fprintf(stderr, "gpgp %s: %s\n", command.c_str(), errorsShown ? count.c_str() : failure.c_str());
+}
+
 int run(int argc, char** argv) {
   CLI::App app("gpgp: grammars, vector graphics and triangle visibility on the GPU", "gpgp");
   app.footer(kExamples);
@@ -128,14 +134,15 @@ int run(int argc, char** argv) {
       if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
         throw Failure("cannot write to standard output");
       if (outcome.failure.empty()) return 0;
-      std::fprintf(stderr, "gpgp %s: %s\n", name.c_str(), outcome.failure.c_str());
+      say(name, outcome.failure, outcome.errorsShown);
       return 1;
     } catch (const Usage& error) {
       std::fprintf(stderr, "gpgp %s: %s\n", name.c_str(), printable(error.what()).c_str());
       return 2;
     } catch (const std::exception& error) {
       const std::string text = printable(error.what());
-      std::fprintf(stderr, "gpgp %s: %s\n", name.c_str(), text.c_str());
+      const auto* shown = dynamic_cast<const ErrorsShown*>(&error);
+      say(name, text, shown ? shown->count : 0);
       if (subcommand.options.json) {
         const Json object = {{"command", name}, {"ok", false}, {"error", text}};
         std::printf("%s\n", object.dump(2).c_str());

@@ -17,7 +17,8 @@ namespace gpgp::cli {
 struct Outcome {
   Json json;
   std::string text;
-  std::string failure; ///< what was done is not what was asked for
+  std::string failure;    ///< what was done is not what was asked for
+  size_t errorsShown = 0; ///< where the failure tells of errors that are on standard error already: how many
 };
 using Work = std::function<Outcome(const CommonOptions&)>;
 

@@ -21,6 +21,14 @@ struct Outcome;
 struct Failure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+/// The same of errors that are on standard error already, each with its place: there they are only counted. The text,
+/// for
+/// --json, is that of the first.
+struct ErrorsShown : Failure {
+  ErrorsShown(const std::string& first, size_t errors)
+      : Failure(first + (errors > 1 ? " (and " + std::to_string(errors - 1) + " more)" : "")), count(errors) {}
+  size_t count;
+};
 /// The command was used wrongly: exit code 2. For what CLI11's own checks cannot know.
 struct Usage : std::runtime_error {
   using std::runtime_error::runtime_error;

@@ -136,8 +136,8 @@ Outcome spawnCga(const CgaOptions& options, const CommonOptions& common) {
   CompileOptions compile{options.file, options.start, options.style, filesOnDisk(), !isCpu, derive.attributes};
   Messages compiled;
   std::optional<Program> program = spawn::cga::compile(text, compile, compiled);
-  const std::string wrong = print(compiled);
-  if (!program) throw Failure(wrong);
+  const std::optional<ErrorsShown> wrong = print(compiled);
+  if (!program) throw wrong.value();
   checkAttributes(derive.attributes, *program);
   std::vector<std::string> names;
   for (const RuleInfo& rule : program->rules)
@@ -182,11 +182,10 @@ Outcome spawnCga(const CgaOptions& options, const CommonOptions& common) {
     milliseconds += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     join(all, std::move(part));
   }
-  std::string failed = print(messages);
+  const std::optional<ErrorsShown> wrongLater = print(messages);
   if (gpu) {
     all = std::move(gpu->all);
     milliseconds = gpu->milliseconds;
-    failed = gpu->failure;
   }
   if (!options.image.empty()) paint(options, all);
   if (!options.out.empty()) writeGlb(options.out, all);
@@ -198,7 +197,12 @@ Outcome spawnCga(const CgaOptions& options, const CommonOptions& common) {
     triangles += leaf.indexCount / 3;
   }
   Outcome outcome;
-  outcome.failure = failed;
+  if (gpu) {
+    outcome.failure = gpu->failure;
+  } else if (wrongLater) {
+    outcome.failure = wrongLater->what();
+    outcome.errorsShown = wrongLater->count;
+  }
   std::ostringstream said;
   said << all.leaves.size() << " terminals (" << all.triangles << " triangles) from " << start.axioms.size()
        << (start.axioms.size() == 1 ? " axiom" : " axioms");
@@ -233,7 +237,7 @@ Outcome spawnCga(const CgaOptions& options, const CommonOptions& common) {
   outcome.json = {{"grammar", options.file},
                   {"device", gpu ? Json(gpu->device) : Json()},
                   {"on_cpu_because", onGpu ? Json() : Json(printable(why))},
-                  {"status", failed.empty() ? "GPGP_SUCCESS" : "GPGP_BUDGET_EXCEEDED"},
+                  {"status", outcome.failure.empty() ? "GPGP_SUCCESS" : "GPGP_BUDGET_EXCEEDED"},
                   {"axioms", start.axioms.size()},
                   {"seed", options.seed},
                   {"start", program->rules[program->start].name},

@@ -12,7 +12,7 @@
 namespace gpgp::cli {
 using namespace spawn::cga;
 
-std::string print(const Messages& messages) {
+std::optional<ErrorsShown> print(const Messages& messages) {
   constexpr size_t kMostPrinted = 20;
   std::string first;
   size_t errors = 0, warnings = 0, omitted = 0;
@@ -28,8 +28,8 @@ std::string print(const Messages& messages) {
     std::fprintf(stderr, "%s\n", printable(line).c_str());
   }
   if (omitted) std::fprintf(stderr, "gpgp spawn: %zu more warnings are left out\n", omitted);
-  if (errors > 1) first += " (and " + std::to_string(errors - 1) + " more)";
-  return first;
+  if (errors == 0) return std::nullopt;
+  return ErrorsShown(first, errors);
 }
 
 std::string misfit(const GraphText& graph) {
@@ -86,8 +86,8 @@ std::string cgaGraph(const std::string& file, const std::string& text, const std
   CompileOptions compile{file, {}, {}, filesOnDisk(), true, attributeValues(attributes)};
   Messages messages;
   const std::optional<Program> program = spawn::cga::compile(text, compile, messages);
-  const std::string wrong = print(messages);
-  if (!program) throw Failure(wrong);
+  const std::optional<ErrorsShown> wrong = print(messages);
+  if (!program) throw wrong.value();
   checkAttributes(compile.attributes, *program);
   if (program->graph.text.empty()) throw Failure(misfit(program->graph) + ", so that it has no operator graph");
   return program->graph.text;

@@ -1,8 +1,10 @@
 // What commands read of .cga files: their attributes, their messages, and the operator graph that they have or have
 // not.
 #pragma once
+#include "cli/shared/common.h"
 #include "spawn/cga/compile.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,8 +15,8 @@ bool isCga(const std::string& file);
 /// Failure where it has none.
 std::string cgaGraph(const std::string& file, const std::string& text, const std::vector<std::string>& attributes);
 
-/// Prints them, and gives the first error, if there is one.
-std::string print(const spawn::cga::Messages& messages);
+/// Prints them, and gives the errors, if there are any.
+std::optional<ErrorsShown> print(const spawn::cga::Messages& messages);
 /// Why a program has no operator graph, in one line.
 std::string misfit(const spawn::cga::GraphText& graph);
 /// Of NAME=VALUE. Throws Usage.

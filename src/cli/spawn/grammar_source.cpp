@@ -142,7 +142,7 @@ Blob compile(std::span<const GrammarText> grammars, bool linked, const std::vect
                              : gpgp::compileGrammar(sources[0]);
   if (blob) return std::move(*blob);
   if (errors.count == 0) throw Failure(grammars[0].file.path + ": " + blob.name());
-  throw Failure(errors.first + (errors.count > 1 ? " (and " + std::to_string(errors.count - 1) + " more)" : ""));
+  throw ErrorsShown(errors.first, errors.count);
 }
 
 } // namespace
@@ -189,8 +189,7 @@ void report(const spawn::Diagnostics& diagnostics, const std::string& file) {
     if (first.empty() && d.severity == GPGP_SEVERITY_ERROR) first = line;
   }
   if (!diagnostics.hasErrors()) return;
-  const size_t more = diagnostics.errorCount() - 1;
-  throw Failure(first + (more ? " (and " + std::to_string(more) + " more)" : std::string()));
+  throw ErrorsShown(first, diagnostics.errorCount());
 }
 
 Blob compileGrammar(const GrammarText& grammar, const std::vector<std::string>& set, bool kernel) {

@@ -329,24 +329,21 @@ private:
 
   /// Constants that name a form, a measure or a face of a roof, and angles of its slopes.
   void checkRoof(const Call& call, uint32_t op, std::span<const Parameter> values) {
-    const auto constant = [&](size_t i) -> std::optional<float> {
-      if (values[i].kind != kParameterConstant) return std::nullopt;
-      return std::bit_cast<float>(values[i].value);
+    const auto constant = [&](size_t i) { // NaN: it is none
+      return values[i].kind == kParameterConstant ? std::bit_cast<float>(values[i].value) : NAN;
+    };
+    const auto refuse = [&](size_t i, const char* what) {
+      diagnostics_.error(call.arguments[i].place, std::string(what) + "; this is " + numberText(constant(i)));
     };
     const auto within = [&](size_t i, uint32_t count, const char* what) {
-      const std::optional<float> value = constant(i);
-      if (value && !(*value >= 0 && *value < static_cast<float>(count)))
-        diagnostics_.error(call.arguments[i].place, std::string(what) + "; this is " + numberText(*value));
+      if (constant(i) < 0 || constant(i) >= static_cast<float>(count)) refuse(i, what);
     };
     if (op == kOpToRoofFace) within(0, 5, "the face of a roof is 0 to 4");
     if (op != kOpRaiseRoof) return;
     within(0, kRoofForms, "the form of a roof is 0 to 7");
     within(1, 3, "the measure of a roof is 0 (height), 1 (rise by run) or 2 (degrees)");
-    const std::optional<float> measure = constant(1), angle = constant(2);
-    const bool isAngle = measure && std::floor(*measure) == static_cast<float>(kRoofByAngle);
-    if (isAngle && angle && !(std::abs(*angle) < 90))
-      diagnostics_.error(call.arguments[2].place,
-                         "the angle of a roof is less than 90 degrees; this is " + numberText(*angle));
+    if (std::floor(constant(1)) == static_cast<float>(kRoofByAngle) && std::abs(constant(2)) >= 90)
+      refuse(2, "the angle of a roof is less than 90 degrees");
   }
 
   void checkBranches(const Call& call, const Operator& op) {
