@@ -1,4 +1,4 @@
-// What every record function promises the engine, on every service: what it calls, what state it leaves, which
+// What every recording function promises the engine, on every service: what it calls, what state it leaves, which
 // barriers it places, and that scratch, drops, frames in flight and kinds of command buffers do not matter.
 #include "aligned.h"
 #include "counting_new.h"
@@ -9,8 +9,10 @@
 #include <gpgp/gpgp.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <set>
+#include <thread>
 
 namespace {
 using namespace gpgp;
@@ -67,7 +69,7 @@ struct ContractTest : testing::TestWithParam<std::string> {
     return frame;
   }
   std::string lastMessage() const { return messages.empty() ? "no message" : messages.back(); }
-  /// Runs one record on a queue, and returns its results.
+  /// Runs one recording on a queue, and returns its results.
   std::vector<uint32_t> run(const host::Queue& queue, const GpgpRecordingInfo& base = {}) {
     scenario->clearOutputs();
     const GpgpFrame frame = advance();
@@ -422,6 +424,39 @@ TEST_P(ContractTest, NotReadyRecordsNothing) {
   expectSaidOnce("not resident");
   EXPECT_TRUE(proxy.calls.empty()) << proxy.calls.front().name;
   ring.drop();
+}
+
+TEST_P(ContractTest, ASecondThreadOnARecorderGetsAnError) {
+  prepare();
+  const GpgpFrame frame = advance();
+  host::FrameRing ring(device, 1);
+  const VkCommandBuffer cmd = ring.begin();
+  GpgpResult second = GPGP_SUCCESS;
+  size_t before = 0, after = 1;
+  proxy.inNextCall = [&] { // in the middle of the first thread's recording
+    before = proxy.calls.size();
+    std::thread([&] { second = scenario->record(cmd, frame, {}); }).join();
+    after = proxy.calls.size();
+  };
+  ASSERT_EQ(scenario->record(cmd, frame, {}), GPGP_SUCCESS) << lastMessage();
+  EXPECT_EQ(second, GPGP_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(after, before) << "the second thread called Vulkan";
+  EXPECT_NE(lastMessage().find("two threads"), std::string::npos) << lastMessage();
+  ring.drop();
+}
+
+TEST_P(ContractTest, LostReportsAreSaidOnceUntilOneIsTaken) {
+  prepare();
+  const auto loseSome = [&] {
+    for (int i = 0; i < 3 * 4 + 2; ++i) run(device.graphics()); // a recorder keeps 3 * 4
+    advance();
+    return std::count_if(messages.begin(), messages.end(),
+                         [](const std::string& m) { return m.find("not taken in time") != std::string::npos; });
+  };
+  EXPECT_EQ(loseSome(), 1);
+  EXPECT_EQ(loseSome(), 1);
+  expectReport(GPGP_SUCCESS);
+  EXPECT_EQ(loseSome(), 2);
 }
 
 TEST_P(ContractTest, DeviceLostMakesCallsFailAndDestroyingLegal) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <mutex>
+#include <utility>
 
 namespace gpgp::test {
 namespace {
@@ -54,6 +55,7 @@ template <class Tag, class R, class... A> struct Wrap<Tag, R(VKAPI_PTR*)(A...)> 
       if constexpr (std::is_same_v<R, VkResult>)
         if (creates(Tag::name) && ++current->creations >= current->failAt && current->failAt) return current->failWith;
     }
+    if (current->inNextCall) std::exchange(current->inNextCall, nullptr)();
     const UncountedNew driver; // what Vulkan allocates is not the library's
     return real(arguments...);
   }

@@ -4,6 +4,7 @@
 #include "host/device.h"
 
 #include <array>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -35,6 +36,7 @@ public:
   void failCreation(uint32_t nth, VkResult with) { failAt = nth, failWith = with, creations = 0; }
 
   std::vector<LoggedCall> calls;
+  std::function<void()> inNextCall; ///< called once, on the calling thread, inside the next call
   uint32_t failAt = 0, creations = 0;
   VkResult failWith = VK_ERROR_OUT_OF_DEVICE_MEMORY;
 

@@ -289,7 +289,7 @@ TEST(GrammarBuilder, DepthAndSizeAreBounded) {
   GrammarBuilder circle = empty();
   circle.axiom(GPGP_SHAPE_BOX, "A").rule("A", circle.translate(1, 0, 0, GrammarOperator{1}));
   EXPECT_EQ(messagesOf(circle), Messages{"error: rule 'A', Translate, Translate: this operator is already used "
-                                         "elsewhere; what is shared must be a rule"});
+                                         "elsewhere; to share it, make it a rule"});
   GrammarBuilder wide = empty();
   wide.axiom(GPGP_SHAPE_BOX, "A").terminal("T", 1, 0);
   GrammarValue sum = wide.shapeSize(Axis::x);

@@ -197,9 +197,10 @@ TEST(Link, ErrorsHaveThePlaceInTheirFile) {
   EXPECT_EQ(linkMessages({{"a.pga", kHouse}, {"b/a.other", kTree}}),
             Messages{"b/a.other: error: 'a' is also the name of a.pga; expected another file name, or an alias: "
                      "linked grammars are told apart by them"});
-  EXPECT_EQ(linkMessages({{"folder/", kHouse}}),
-            Messages{"folder/: error: this grammar has no name; expected one, as of a file: what it is linked with "
-                     "calls it so"});
+  EXPECT_EQ(
+      linkMessages({{"folder/", kHouse}}),
+      Messages{
+          "folder/: error: this grammar has no name; expected one, such as a file name: linked grammars refer to it"});
   std::string many = "axiom Box A; A = T0;";
   for (int i = 0; i < 600; ++i) many.append("\nterminal T").append(std::to_string(i)).append(" (1,0);");
   EXPECT_EQ(linkMessages({{"a.pga", many}, {"b.pga", many}}),

@@ -111,7 +111,7 @@ const Property kProperties[] = {
     {"color-interpolation", "linearRGB", "<path d='M0 0h9v9' fill-opacity='.5' ", "/>",
      named("color-interpolation linearRGB of a painted element is not supported")},
     {"clip-path", "url(#c)", kClip, "/>", as("<rect x='20' y='20' width='30' height='60' fill='#0a0'/>")},
-    {"clip-path", "circle(20px)", kRect, "/>", named("is no clipPath of this file")},
+    {"clip-path", "circle(20px)", kRect, "/>", named("is not a clipPath of this file")},
     {"clip-rule", "evenodd", "<clipPath id='c'><path d='M0 0H100V100H0ZM30 30H70V70H30Z' ",
      "/></clipPath><rect width='100' height='100' clip-path='url(#c)'/>",
      as("<path d='M0 0H100V100H0ZM30 30V70H70V30Z'/>")},

@@ -184,7 +184,7 @@ TEST(SvgSheets, WhatIsNotReadIsNamedWithItsPlace) {
             "style sheet does not count"});
   EXPECT_EQ(sheeted("", "<style>@media (min-width:9px) {.a{fill:red}}</style>", files).placed,
             Texts{"test.svg:1:73: warning: style rule @media has the condition '(min-width:9px)', which is not "
-                  "supported: what is in it does not count"});
+                  "supported: its contents are ignored"});
   EXPECT_EQ(sheeted("", "<style>@supports (fill:red) {.a{fill:red}}</style>", files).placed,
             Texts{"test.svg:1:73: warning: style rule @supports is not supported"});
   EXPECT_EQ(sheeted("\n <?xml-stylesheet href='a.xsl' type='text/xsl'?>", "", files).placed,
