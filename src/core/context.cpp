@@ -235,6 +235,7 @@ Result<void> Context::advance(const GpgpFrame& frame) {
                      "frame.current - frame.safe is %llu, but the context was made for %u frames in flight",
                      static_cast<unsigned long long>(frame.current - frame.safe), maxFramesInFlight);
   frame_ = frame;
+  begun_ = true;
   uploads_->advance();
   for (Recorder* recorder = recorders; recorder; recorder = recorder->nextRecorder()) recorder->advance();
   freeRetired(frame.safe);
@@ -252,7 +253,7 @@ bool Context::isNew(std::initializer_list<const char*> texts) const {
 
 Result<void> Context::checkFrame(const GpgpFrame* frame) const {
   if (!frame) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "frame is NULL");
-  if (frame_.current == 0) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "no frame has begun; call gpgpAdvance first");
+  if (!begun_) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "no frame has begun; call gpgpAdvance first");
   if (frame->current != frame_.current || frame->safe != frame_.safe)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
                      "frame {%llu, %llu} is not the one of the last gpgpAdvance, {%llu, %llu}",

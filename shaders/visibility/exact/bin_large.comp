@@ -14,10 +14,10 @@ shared uint groupPairs;
 shared uint firstPair;
 
 void main() {
-  uint count = min(counters.bigCount, params.maxBig);
+  uint count = min(counters.largeCandidateCount, params.maxLargeCandidates);
   for (uint entry = gl_WorkGroupID.x; entry < count; entry += gl_NumWorkGroups.x) {
-    uint index = slots[bigAt(entry)];
-    uint place = slots[bigAt(entry) + 1u];
+    uint index = slots[largeCandidateAt(entry)];
+    uint place = slots[largeCandidateAt(entry) + 1u];
     uint slice = place & 0xfffu;
     uint slices = (place >> 12u) & 0xfffu;
     uint camera = place >> 24u;

@@ -3,12 +3,12 @@
 #include "visibility/shared/candidate.h"
 
 /// Limits (then where lists end), the lists' lengths, three words a tile (how many candidates reach over it that are
-/// not seen yet, and that are; where they lie, in this order), the big candidates.
+/// not seen yet, and that are; where they lie, in this order), the large candidates.
 layout(std430, set = 0, binding = kBindSlots) buffer SlotBuffer { uint slots[]; };
 
 uint lengthAt(uint slot) { return params.slotCapacity + slot; }
 uint tileWord(uint tile) { return params.slotCapacity * 2u + tile * kTileWords; }
-uint bigAt(uint entry) { return tileWord(params.slotCapacity / 64u) + entry * 2u; }
+uint largeCandidateAt(uint entry) { return tileWord(params.slotCapacity / 64u) + entry * 2u; }
 
 /// Of candidates and tiles there is room for half as many pairs as of candidates and pixels.
 uint maxTilePairs() { return params.maxPairs / 2u; }

@@ -26,22 +26,22 @@ void add(ScreenTriangle t, uint id, uint camera) {
     writeCandidate(place, makeCandidate(t, id));
     if (open) writeNonOpaque(place, nonOpaque);
     uint slices = clamp(tilesOf(bounds, camera).z / kSliceTiles, 1u, kMaxSlices);
-    uint first = atomicAdd(counters.bigCount, slices);
+    uint first = atomicAdd(counters.largeCandidateCount, slices);
     // What is counted below the capacity is written, so that no entry lies unwritten among the others.
-    uint end = min(first + slices, params.maxBig);
+    uint end = min(first + slices, params.maxLargeCandidates);
     for (uint i = first; i < end; ++i) {
-      slots[bigAt(i)] = place;
-      slots[bigAt(i) + 1u] = (i - first) | (slices << 12u) | (camera << 24u);
+      slots[largeCandidateAt(i)] = place;
+      slots[largeCandidateAt(i) + 1u] = (i - first) | (slices << 12u) | (camera << 24u);
     }
-    if (first < end) atomicMax(counters.bigArgs[0], min(end, kMaxGroups));
-    if (first + slices <= params.maxBig) return;
+    if (first < end) atomicMax(counters.binLargeArgs[0], min(end, kMaxGroups));
+    if (first + slices <= params.maxLargeCandidates) return;
   }
   atomicOr(bits[id >> 5u], 1u << (id & 31u));
   atomicAdd(counters.unresolved, 1u);
 }
 
 void main() {
-  uint count = counters.bigQueueCount;
+  uint count = counters.largeQueueCount;
   for (uint entry = gl_GlobalInvocationID.x; entry < count; entry += gl_NumWorkGroups.x * 64u) {
     uint item;
     uint number = queue[params.maxItems * 2u - 1u - entry];

@@ -60,7 +60,7 @@ GPGP_CONST int kBindView = 12;
 GPGP_CONST int kBindRecords = 13;
 GPGP_CONST int kBindSizes = 14;
 GPGP_CONST int kBindSlots =
-    15; // words per pixel: limits (then where its list ends), list lengths; tiles; big candidates
+    15; // words per pixel: limits (then where its list ends), list lengths; tiles; large candidates
 GPGP_CONST int kBindCommands = 16;
 GPGP_CONST int kBindCommandCount = 17;
 GPGP_CONST int kBindDrawCommands = 18;
@@ -184,7 +184,7 @@ struct Params {
   uint method;        // GpgpSamplingMethod
   uint slotCapacity;  // pixels of the largest viewport, in whole tiles
   uint maxCandidates; // capacities of exact sampling
-  uint maxBig;
+  uint maxLargeCandidates;
   uint maxPairs;
   uint pixelCapacity; // of the largest viewport of all cameras
   uint heuristics;    // GPGP_HEURISTIC_...
@@ -283,10 +283,10 @@ struct Counters {
   uint mediumArgs[3];
   uint largeArgs[3];
   uint leftArgs[3];
-  uint bigQueueCount; // triangles that reach over more than 8 x 8 pixels, or are clipped
-  uint bigUnfoldArgs[3];
-  uint bigCount;
-  uint bigArgs[3];
+  uint largeQueueCount; // triangles that reach over more than 8 x 8 pixels, or are clipped
+  uint selectLargeArgs[3];
+  uint largeCandidateCount;
+  uint binLargeArgs[3];
   uint tilePairs; // of a candidate and a tile: asked for
   uint placeArgs[3];
   uint overlapCount; // conservative: triangles of more than 8 x 8 pixels

@@ -139,10 +139,10 @@ void main() {
     counters.mediumArgs[2] = 1u;
     counters.largeArgs[1] = 1u;
     counters.largeArgs[2] = 1u;
-    counters.bigUnfoldArgs[1] = 1u;
-    counters.bigUnfoldArgs[2] = 1u;
-    counters.bigArgs[1] = 1u;
-    counters.bigArgs[2] = 1u;
+    counters.selectLargeArgs[1] = 1u;
+    counters.selectLargeArgs[2] = 1u;
+    counters.binLargeArgs[1] = 1u;
+    counters.binLargeArgs[2] = 1u;
     counters.openArgs[1] = 1u;
     counters.openArgs[2] = 1u;
     counters.longArgs[1] = 1u;

@@ -22,10 +22,10 @@ shared uint groupTriangles;
 shared uint groupSkipped;
 shared uint groupWinners;
 shared uint groupOnScreen;
-shared uint groupBig;
+shared uint groupLarge;
 shared uint firstWinner;
 shared uint firstOnScreen;
-shared uint firstBig;
+shared uint firstLarge;
 shared uint groupNonOpaque;
 shared uint firstNonOpaque;
 
@@ -45,7 +45,7 @@ void main() {
     if (gl_LocalInvocationIndex == 0u) {
       groupWinners = 0u;
       groupOnScreen = 0u;
-      groupBig = 0u;
+      groupLarge = 0u;
       groupNonOpaque = 0u;
     }
     barrier();
@@ -54,7 +54,7 @@ void main() {
     const uint kNone = 0xffffffffu;
     uint winner = kNone;
     uint onScreen = kNone;
-    uint big = kNone;
+    uint large = kNone;
     uint nonOpaque = kNone;
     uint id = 0u;
     if (local < end) {
@@ -80,9 +80,9 @@ void main() {
         if (fate == kWhole) bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
         bool reaches = bounds.x < bounds.z && bounds.y < bounds.w;
         onSamples = onSamples || reaches;
-        bool isBig = fate == kClipped || (reaches && (bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8));
+        bool isLargeCandidate = fate == kClipped || (reaches && (bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8));
         bool listed = !open || params.maxNonOpaque != 0u;
-        if (isBig && listed) big = atomicAdd(groupBig, 1u);
+        if (isLargeCandidate && listed) large = atomicAdd(groupLarge, 1u);
         else if (reaches && listed) onScreen = atomicAdd(groupOnScreen, 1u);
       }
       if (open && (onSamples || fate == kClipped)) nonOpaque = atomicAdd(groupNonOpaque, 1u);
@@ -97,9 +97,9 @@ void main() {
         firstOnScreen = atomicAdd(counters.onScreenCount, groupOnScreen);
         atomicMax(counters.onScreenArgs[0], min((firstOnScreen + groupOnScreen + 63u) / 64u, kMaxGroups));
       }
-      if (groupBig != 0u) {
-        firstBig = atomicAdd(counters.bigQueueCount, groupBig);
-        atomicMax(counters.bigUnfoldArgs[0], min((firstBig + groupBig + 63u) / 64u, kMaxGroups));
+      if (groupLarge != 0u) {
+        firstLarge = atomicAdd(counters.largeQueueCount, groupLarge);
+        atomicMax(counters.selectLargeArgs[0], min((firstLarge + groupLarge + 63u) / 64u, kMaxGroups));
       }
       if (groupNonOpaque != 0u) {
         firstNonOpaque = atomicAdd(counters.nonOpaque, groupNonOpaque);
@@ -111,7 +111,7 @@ void main() {
     uint number = chunk * kChunk + gl_LocalInvocationIndex;
     if (winner != kNone) queue[params.maxItems - 1u - firstWinner - winner] = number;
     if (onScreen != kNone) queue[params.maxItems + firstOnScreen + onScreen] = number;
-    if (big != kNone) queue[params.maxItems * 2u - 1u - firstBig - big] = number;
+    if (large != kNone) queue[params.maxItems * 2u - 1u - firstLarge - large] = number;
     if (nonOpaque != kNone) {
       nonOpaque += firstNonOpaque;
       if (nonOpaque < params.maxNonOpaque) queue[params.nonOpaqueAt + nonOpaque] = number;

@@ -46,7 +46,7 @@ void addExact(core::PassList& list, const Budgets& budgets, const core::Device& 
                                           {kBindBits, readWrite},
                                           {kBindCandidates, write},
                                           {kBindSlots, readWrite}},
-                                         kBindCounters, offsetof(Counters, bigUnfoldArgs)))
+                                         kBindCounters, offsetof(Counters, selectLargeArgs)))
       .beside = true;
   fetchesTriangles(list.dispatchIndirect("select", addShader(list, "select", visibility_select, {0, 1, 1, nonOpaque}),
                                          {{kBindQueue, read},
@@ -64,9 +64,9 @@ void addExact(core::PassList& list, const Budgets& budgets, const core::Device& 
                          {kBindBits, readWrite},
                          {kBindCandidates, read},
                          {kBindPairs, write}},
-                        kBindCounters, offsetof(Counters, bigArgs));
+                        kBindCounters, offsetof(Counters, binLargeArgs));
   list.dispatch("bin allocate", addShader(list, "bin allocate", visibility_bin_allocate),
-                {{kBindParams, read}, {kBindCounters, readWrite}, {kBindSlots, readWrite}}, kAllotGroups);
+                {{kBindParams, read}, {kBindCounters, readWrite}, {kBindSlots, readWrite}}, kAllocateGroups);
   list.dispatchIndirect("bin place", addShader(list, "bin place", visibility_bin_place),
                         {{kBindParams, read}, {kBindCounters, read}, {kBindSlots, readWrite}, {kBindPairs, readWrite}},
                         kBindCounters, offsetof(Counters, placeArgs));

@@ -199,7 +199,7 @@ Params parametersOf(const GpgpVisibilityInfo& info, const Budgets& budgets, cons
   params.hasSizes = info.pixelCounts.buffer ? 1 : 0;
   params.method = static_cast<uint32_t>(info.method);
   params.maxCandidates = budgets.maxCandidates;
-  params.maxBig = kMaxBig;
+  params.maxLargeCandidates = kMaxLargeCandidates;
   params.maxPairs = budgets.maxPairs;
   return params;
 }

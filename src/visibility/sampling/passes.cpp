@@ -41,7 +41,8 @@ void addResources(core::PassList& list, const Budgets& budgets) {
   engine("history");
   own("records", recordBytes);
   engine("pixelCounts");
-  own("limits", exact ? (budgets.slots() + kMaxBig) * 8 + budgets.slots() / 64 * shader::kTileWords * 4 : 4);
+  own("limits",
+      exact ? (budgets.slots() + kMaxLargeCandidates) * 8 + budgets.slots() / 64 * shader::kTileWords * 4 : 4);
   engine("commands");
   engine("drawCountBuffer");
   engine("drawCommands");

@@ -14,14 +14,14 @@ namespace gpgp::visibility {
 
 // Workgroup counts of a recording.
 constexpr uint32_t kOneGroup = 0, kClearGroups = 1, kPixelGroups = 2, kWordGroups = 3, kTileGroups = 4,
-                   kEntryGroups = 5, kEachPixelGroups = 6, kChunkGroups = 7, kScreenTileGroups = 8, kAllotGroups = 9,
+                   kEntryGroups = 5, kEachPixelGroups = 6, kChunkGroups = 7, kScreenTileGroups = 8, kAllocateGroups = 9,
                    kClusterGroups = 10, kListGroups = 11;
 // Conditions of a recording.
 constexpr uint32_t kIfExact = 0, kIfCommands = 1, kIfDraws = 2, kIfExtents = 3, kIfConservative = 4, kIfSampling = 5,
                    kIfMeasuring = 6, kIfNearby = 7, kIfClusters = 8, kIfNonOpaque = 9, kIfAlphaTests = 10,
                    kIfResolve = 11, kIfResolveAlpha = 12;
 
-constexpr uint32_t kMaxBig = 1 << 20; ///< entries for candidates of more than 8 x 8 pixels
+constexpr uint32_t kMaxLargeCandidates = 1 << 20; ///< entries for candidates of more than 8 x 8 pixels
 constexpr uint32_t kMaxRefinements = 4;
 
 /// Workgroups of 256 for a number of items; shaders stride beyond the limit.

@@ -69,7 +69,7 @@ void setGroups(core::Record& record, const shader::Params& params, const Budgets
   record.groups[kPixelGroups] = {groupsOf256((pixels + 7) / 8), 1, 1};
   record.groups[kWordGroups] = {groupsOf256(std::max<uint64_t>(words, params.viewWords)), 1, 1};
   record.groups[kTileGroups] = {static_cast<uint32_t>(std::min<uint64_t>(slots / 64, shader::kMaxGroups)), 1, 1};
-  record.groups[kAllotGroups] = {groupsOf256(slots / 64), 1, 1};
+  record.groups[kAllocateGroups] = {groupsOf256(slots / 64), 1, 1};
   record.groups[kEntryGroups] = {groupsOf256(params.entryCount), 1, 1};
   record.groups[kChunkGroups] = {groupsOf256(budgets.chunks()), 1, 1};
   record.groups[kClusterGroups] = {std::min(params.clusterCount, shader::kMaxGroups), 1, 1};

@@ -93,8 +93,8 @@ void addStandard(core::PassList& list, const Budgets& budgets, const core::Devic
       pass.beside = beside || alpha;
     }
   };
-  const char* const names[2][4] = {{"depth small", "depth medium", "depth large", "depth left"},
-                                   {"ids small", "ids medium", "ids large", "ids left"}};
+  const char* const names[2][4] = {{"depth small", "depth medium", "depth large", "depth overflow"},
+                                   {"ids small", "ids medium", "ids large", "ids overflow"}};
   const uint32_t limits = budgets.methods & GPGP_SAMPLING_EXACT_BIT ? 1 : 0;
   for (uint32_t phase = 0; phase < (single ? 1 : 2); ++phase) {
     // Draws triangles that it makes itself, or those that have a record.
