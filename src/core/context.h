@@ -95,7 +95,7 @@ private:
   std::pmr::vector<Object*> living_;
   Object* retired_ = nullptr; // context
   GpgpFrame frame_{1, 0};
-  bool begun_ = false; ///< advance() was called
+  bool begun_ = false;                                      ///< advance() was called
   mutable std::array<std::atomic<uint64_t>, 64> said_ = {}; ///< hashes, see isNew
   std::atomic<bool> lost_{false};
   bool ownsPipelineCache_ = false;

@@ -71,7 +71,7 @@ struct DrawRecord {
 struct RawReport {
   GpgpReportHeader header{}; ///< status SUCCESS or NOT_EXECUTED
   std::span<const uint32_t> words;
-  std::array<uint32_t, 4> note = {}; ///< Record::note
+  std::array<uint32_t, 4> note = {};   ///< Record::note
   std::span<const std::byte> readBack; ///< Record::readBackBytes; none of what was not executed
 };
 
