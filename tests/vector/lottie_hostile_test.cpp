@@ -48,7 +48,7 @@ TEST(LottieHostile, FilesEndWithinTheirLimits) {
   add("mattes in a ring",
       animation(shapeLayer(kSquare + "," + kRed, "{}", R"("ind":1,"tt":1,"tp":2,)") + "," +
                 shapeLayer(kSquare + "," + kRed, "{}", R"("ind":2,"tt":1,"tp":1,)")),
-      "more than 28 effects");
+      "more than 28 nested effects");
   add("a matte of nobody", animation(shapeLayer(kSquare + "," + kRed, "{}", R"("ind":1,"tt":1,)")),
       "a matte is not there");
   add("a million copies",
@@ -82,7 +82,7 @@ TEST(LottieHostile, FilesEndWithinTheirLimits) {
   add("masks in masks",
       animation(R"({"ty":1,"sw":100,"sh":100,"sc":"#fff000","ip":0,"op":60,"ks":{},"masksProperties":[)" +
                 repeated(R"({"mode":"s","pt":{"k":{"v":[[0,0],[9,0],[9,9]],"c":true}}},)", 70) + R"({"mode":"n"}]})"),
-      "more than 28 effects");
+      "more than 28 nested effects");
   add("a mask without vertices",
       animation(
           R"({"ty":1,"sw":9,"sh":9,"sc":"red","ip":0,"op":60,"ks":{},"masksProperties":[{"mode":"a","pt":{"k":{}}}]})"),

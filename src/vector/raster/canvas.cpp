@@ -75,7 +75,7 @@ Look lookOf(const Gather& gather, const GpgpCanvasInfo& info, const CanvasSizes&
   look.projective = gather.projective;
   look.images = gather.images;
   look.groups = gather.groups;
-  look.several = gather.assetCount > 1 || gather.lists;
+  look.several = gather.assetCount > 1 || gather.lists || gather.shapes > 0;
   look.rich = look.groups || ((look.gradients || look.images) && look.projective);
   const uint64_t lists = uint64_t(tiles) * shader::kTileListWords + uint64_t(gather.smallGlyphEntries()) * 3;
   look.alone = gather.smallGlyphs() > 0 && gather.smallGlyphs() == gather.placements() && !look.gradients &&

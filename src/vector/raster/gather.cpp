@@ -499,7 +499,6 @@ Result<void> Gather::addLayeredList(const List& list, const GpgpCanvasItem& item
 }
 
 void Gather::finish(shader::CanvasHeader& header) {
-  lists = lists || shapes;
   header.sourceCount = sources;
   header.itemCount = used_.placements;
   header.segmentCount = used_.segments;

@@ -98,7 +98,7 @@ public:
   uint32_t slots() const { return assetCount + 1 + (patchItems ? kPatchTableSlots : 0); }
   static constexpr uint32_t kPatchTableSlots = sizeof(shader::PatchTableRecord) / sizeof(shader::SlotRecord);
   bool gradients = false, projective = false, images = false, groups = false; ///< whether there are any
-  bool lists = false; ///< there are shapes, scissors or clips, which shaders for one drawing do not know
+  bool lists = false; ///< there are scissors or clips, which shaders for one drawing do not know, nor shapes
   uint32_t smallGlyphs() const { return used_.smallGlyphs; }             ///< small glyphs
   uint32_t smallGlyphEntries() const { return used_.smallGlyphEntries; } ///< what they take at most
   uint32_t placements() const { return used_.placements; }
