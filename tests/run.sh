@@ -104,7 +104,7 @@ if [[ $quick == no ]]; then
   if hasTimeFor 75 "Windows, under Wine"; then
     step "Windows, under Wine (tests/windows.sh)" windowsUnderWine || true
   fi
-  if hasTimeFor 15 "ThreadSanitizer"; then
+  if hasTimeFor 30 "ThreadSanitizer"; then
     step "ThreadSanitizer (tests/sanitizers/tsan.sh)" tests/sanitizers/tsan.sh "$(jobCount)" || true
   fi
   if hasTimeFor 170 "build and tests, asan-ubsan"; then buildAndTest asan-ubsan; fi
