@@ -560,7 +560,7 @@ TEST(CliSpawn, AxiomFilesSayWhatIsWrongAndWhere) {
             "2:9: error: the grammar does not start \"One\" with shape \"Quad\", only with: Box");
   EXPECT_EQ(error("x,z,shape\n1,2,Box\n"), "2:5: error: a shape needs the rule that starts with it");
   EXPECT_EQ(error("x,x\n"), "1:3: error: two columns are named \"x\"");
-  EXPECT_EQ(error("x,w\n").substr(0, 33), "1:3: error: \"w\" is not a column;");
+  EXPECT_EQ(error("x,w\n").substr(0, 32), "1:3: error: \"w\" is not a column;");
   EXPECT_EQ(error("[{\"position\": [1, 2, 3]},\n\n {\"rotation\": 3}]").substr(0, 36),
             "3:2: error: an axiom needs a value f");
   EXPECT_EQ(error("[\n{\"position\": [1, 2]}]"), "2:1: error: position takes three numbers, [x, y, z]");
