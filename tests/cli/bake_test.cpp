@@ -130,7 +130,7 @@ TEST(CliBake, BytesSayWhatStandardInputIs) {
   EXPECT_TRUE(piped("cat " + grammar.path()) == bakedWith({grammar.path()}));
   const ProcessResult nothing = shell("printf 'a\\0b'" + bake); // neither text nor a kind of file that bake knows
   EXPECT_EQ(nothing.exitCode, 2);
-  EXPECT_NE(nothing.err.find("--type says what it is"), std::string::npos) << nothing.err;
+  EXPECT_NE(nothing.err.find("state its type with --type"), std::string::npos) << nothing.err;
 }
 
 TEST(CliBake, DrawingsForAScale) {

@@ -128,7 +128,7 @@ TEST(CliVisibilityGltf, AlphaIsSampled) {
     }
   made.gltf["materials"][0]["alphaMode"] = "MASK";
   made.gltf["images"][0]["uri"] = "data:image/png;base64,AAAA";
-  EXPECT_TRUE(notes(made.seen(), "no PNG, JPEG or WebP"));
+  EXPECT_TRUE(notes(made.seen(), "not readable as PNG, JPEG or WebP"));
   made.gltf["textures"][0]["source"] = 7;
   EXPECT_NE(made.failure().find("names no image"), std::string::npos);
   made.gltf["textures"] = json::array();

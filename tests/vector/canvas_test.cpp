@@ -845,7 +845,7 @@ TEST_F(CanvasTest, GroupsThatCannotBeAreRefusedWithWords) {
   std::vector<GpgpPathGroup> deep;
   for (uint32_t i = 0; i < 200; ++i) deep.push_back({i, 0.5f, nullptr, 0}); // layers from the fifth on
   path.group = 200;
-  refused({path}, deep, GPGP_ERROR_UNSUPPORTED, "more than 32 layers");
+  refused({path}, deep, GPGP_ERROR_UNSUPPORTED, "more than 32 nested layers");
   path.group = 1;
   deep.clear();
   for (uint32_t i = 0; i < 17; ++i) deep.push_back({i, 1, &outside, 1});

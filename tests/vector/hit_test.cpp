@@ -291,13 +291,13 @@ TEST_F(CanvasTest, WrongCallsOfListsSayWhatIsWrong) {
   const float beyond[4] = {0, 0, 2e7f, 9};
   refused(gpgpPushClip(list.list, beyond, nullptr), "within 1e7");
   for (int i = 0; i < GPGP_MAX_OPACITY_DEPTH; ++i) EXPECT_EQ(gpgpPushGroup(list.list, 0.5f), GPGP_SUCCESS);
-  refused(gpgpPushGroup(list.list, 0.5f), "more than 4 groups");
+  refused(gpgpPushGroup(list.list, 0.5f), "more than 4 nested groups");
   list.reset();
   for (int i = 0; i < GPGP_MAX_LIST_DEPTH; ++i) list.fade(1);
-  refused(gpgpPushOpacity(list.list, 1), "more than 64 pushes");
+  refused(gpgpPushOpacity(list.list, 1), "more than 64 nested pushes");
   list.reset();
   for (int i = 0; i < GPGP_MAX_CLIP_DEPTH; ++i) list.clip({0, 0, 9, 9});
-  refused(gpgpPushClip(list.list, good, nullptr), "more than 16 clips");
+  refused(gpgpPushClip(list.list, good, nullptr), "more than 16 nested clips");
   const auto record = [&](GpgpCanvasItem item) {
     const GpgpFrame frame = advance();
     GpgpResult result = GPGP_SUCCESS;

@@ -542,7 +542,7 @@ TEST_F(CanvasTest, GroupsFadeAsOne) {
   for (int i = 0; i < 3; ++i) list.group(0.5f);
   list.add(grouped).pop(3);
   refused(list.item());
-  EXPECT_NE(lastMessage().find("entry 0: with those of its drawing, more than 4 groups"), std::string::npos)
+  EXPECT_NE(lastMessage().find("entry 0: with those of its drawing, more than 4 nested groups"), std::string::npos)
       << lastMessage();
   list.reset();
   for (int i = 0; i < 70; ++i) list.group(0.5f).add(rectangle(0, 0, 4, 4)).pop();
