@@ -450,7 +450,7 @@ TEST(CliVisibilityViews, WhatIsWrongWithCameras) {
   EXPECT_NE(failure("1 2 3").find("3 numbers"), std::string::npos);
   EXPECT_NE(failure(good + " reversed").find("word 17, 'reversed'"), std::string::npos);
   EXPECT_NE(failure(good + " 1 1").find("18 numbers"), std::string::npos);
-  EXPECT_NE(failure(good + " nan").find("no finite number"), std::string::npos);
+  EXPECT_NE(failure(good + " nan").find("not a finite number"), std::string::npos);
   const glm::dmat4 away = plainCamera() * glm::translate(glm::dmat4(1), glm::dvec3(0, 0, 20));
   EXPECT_NE(failure(textOf(away), {"--cell", "2x2"}).find("does not lie before the camera"), std::string::npos);
   expectWrongUsage({{"visibility", model.path(), "--cell", "inf:4"},
