@@ -21,16 +21,12 @@ namespace {
 using namespace gpgp;
 constexpr uint32_t kWidth = 640, kHeight = 480;
 
-/// With a pass that draws into the image: shared by all tests.
-struct Stage : test::Stage {
-  VkRenderPass pass = VK_NULL_HANDLE;
-  VkFramebuffer framebuffer = VK_NULL_HANDLE;
+/// With textures of ImGui's: shared by all tests.
+struct Stage : test::PassStage {
   VkDescriptorPool pool = VK_NULL_HANDLE;
 
   explicit Stage(VkFormat f = VK_FORMAT_R8G8B8A8_UNORM)
-      : test::Stage(f, kWidth, kHeight, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) {
-    makePass();
-    makeFramebuffer();
+      : PassStage(f, kWidth, kHeight, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) {
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 8};
     VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
     poolInfo.maxSets = 8;
@@ -41,43 +37,6 @@ struct Stage : test::Stage {
   ~Stage() {
     vkDeviceWaitIdle(device.device);
     vkDestroyDescriptorPool(device.device, pool, nullptr);
-    vkDestroyFramebuffer(device.device, framebuffer, nullptr);
-    vkDestroyRenderPass(device.device, pass, nullptr);
-  }
-  void makePass() {
-    VkAttachmentDescription attachment{};
-    attachment.format = format;
-    attachment.samples = VK_SAMPLE_COUNT_1_BIT;
-    attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    attachment.finalLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-    VkSubpassDescription subpass{};
-    subpass.colorAttachmentCount = 1;
-    subpass.pColorAttachments = &reference;
-    VkSubpassDependency dependencies[2]{};
-    dependencies[0].srcSubpass = dependencies[1].dstSubpass = VK_SUBPASS_EXTERNAL;
-    dependencies[0].srcStageMask = dependencies[1].dstStageMask = VK_PIPELINE_STAGE_TRANSFER_BIT;
-    dependencies[0].dstStageMask = dependencies[1].srcStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
-    dependencies[0].dstAccessMask = dependencies[1].srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
-    dependencies[1].dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
-    VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
-    info.attachmentCount = info.subpassCount = 1;
-    info.pAttachments = &attachment;
-    info.pSubpasses = &subpass;
-    info.dependencyCount = 2;
-    info.pDependencies = dependencies;
-    sdl2::check(vkCreateRenderPass(device.device, &info, nullptr, &pass), "render pass");
-  }
-  void makeFramebuffer() {
-    VkFramebufferCreateInfo framebufferInfo{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
-    framebufferInfo.renderPass = pass;
-    framebufferInfo.attachmentCount = 1;
-    framebufferInfo.pAttachments = &view;
-    framebufferInfo.width = kWidth;
-    framebufferInfo.height = kHeight;
-    framebufferInfo.layers = 1;
-    sdl2::check(vkCreateFramebuffer(device.device, &framebufferInfo, nullptr, &framebuffer), "framebuffer");
   }
 };
 

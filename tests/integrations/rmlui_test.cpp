@@ -27,19 +27,16 @@ struct Silent final : Rml::SystemInterface {
 
 /// Device, gpgp and RmlUi: shared by all tests.
 struct Shared {
-  test::Stage stage{VK_FORMAT_R8G8B8A8_UNORM, kWidth, kHeight,
-                    VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
-  VkRenderPass pass = VK_NULL_HANDLE;
-  VkFramebuffer framebuffer = VK_NULL_HANDLE;
+  test::PassStage stage{VK_FORMAT_R8G8B8A8_UNORM, kWidth, kHeight,
+                        VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
   Silent system;
   rmlui::FontEngine fonts;
   std::unique_ptr<rmlui::Renderer> renderer;
   Rml::Context* ui = nullptr;
 
   Shared() {
-    makePass();
     auto target = init<GpgpTargetInfo>();
-    target.renderPass = pass;
+    target.renderPass = stage.pass;
     rmlui::RendererInfo info;
     info.context = stage.context;
     info.physicalDevice = stage.device.physical;
@@ -67,8 +64,6 @@ struct Shared {
     vkDeviceWaitIdle(stage.device.device);
     Rml::Shutdown();
     renderer.reset();
-    vkDestroyFramebuffer(stage.device.device, framebuffer, nullptr);
-    vkDestroyRenderPass(stage.device.device, pass, nullptr);
   }
   /// A red square in the left half of a page of 20 x 10, a blue one that reaches beyond its right side.
   Drawing makeCard() {
@@ -87,39 +82,6 @@ struct Shared {
     info.paths = paths;
     info.pathCount = 2;
     return *Drawing::create(stage.context, info);
-  }
-  void makePass() {
-    VkAttachmentDescription attachment{};
-    attachment.format = stage.format;
-    attachment.samples = VK_SAMPLE_COUNT_1_BIT;
-    attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    attachment.finalLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-    VkSubpassDescription subpass{};
-    subpass.colorAttachmentCount = 1;
-    subpass.pColorAttachments = &reference;
-    VkSubpassDependency dependencies[2]{};
-    dependencies[0].srcSubpass = dependencies[1].dstSubpass = VK_SUBPASS_EXTERNAL;
-    dependencies[0].srcStageMask = dependencies[1].dstStageMask = VK_PIPELINE_STAGE_TRANSFER_BIT;
-    dependencies[0].dstStageMask = dependencies[1].srcStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
-    dependencies[0].dstAccessMask = dependencies[1].srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
-    dependencies[1].dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
-    VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
-    info.attachmentCount = info.subpassCount = 1;
-    info.pAttachments = &attachment;
-    info.pSubpasses = &subpass;
-    info.dependencyCount = 2;
-    info.pDependencies = dependencies;
-    sdl2::check(vkCreateRenderPass(stage.device.device, &info, nullptr, &pass), "render pass");
-    VkFramebufferCreateInfo framebufferInfo{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
-    framebufferInfo.renderPass = pass;
-    framebufferInfo.attachmentCount = 1;
-    framebufferInfo.pAttachments = &stage.view;
-    framebufferInfo.width = kWidth;
-    framebufferInfo.height = kHeight;
-    framebufferInfo.layers = 1;
-    sdl2::check(vkCreateFramebuffer(stage.device.device, &framebufferInfo, nullptr, &framebuffer), "framebuffer");
   }
 };
 
@@ -143,7 +105,7 @@ struct RmlUi : testing::Test {
     if (!document) return {};
     document->Show();
     Picture picture;
-    test::Stage& stage = shared->stage;
+    test::PassStage& stage = shared->stage;
     for (int i = 0; i < frames; ++i) {
       VkCommandBuffer commands = stage.frames.begin();
       EXPECT_EQ(stage.context.advance(stage.frames.number()), GPGP_SUCCESS);
@@ -165,8 +127,8 @@ struct RmlUi : testing::Test {
       if (inPass) {
         const VkClearValue clear{};
         VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
-        begin.renderPass = shared->pass;
-        begin.framebuffer = shared->framebuffer;
+        begin.renderPass = stage.pass;
+        begin.framebuffer = stage.framebuffer;
         begin.renderArea = {{0, 0}, {kWidth, kHeight}};
         begin.clearValueCount = 1;
         begin.pClearValues = &clear;

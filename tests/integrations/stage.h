@@ -95,4 +95,57 @@ private:
   VkDeviceMemory imageMemory_ = VK_NULL_HANDLE, bufferMemory_ = VK_NULL_HANDLE;
 };
 
+/// With a pass that clears the image and draws into it.
+struct PassStage : Stage {
+  VkRenderPass pass = VK_NULL_HANDLE;
+  VkFramebuffer framebuffer = VK_NULL_HANDLE;
+
+  PassStage(VkFormat f, uint32_t w, uint32_t h, VkImageUsageFlags usage) : Stage(f, w, h, usage) {
+    makePass();
+    makeFramebuffer();
+  }
+  ~PassStage() {
+    vkDeviceWaitIdle(device.device);
+    vkDestroyFramebuffer(device.device, framebuffer, nullptr);
+    vkDestroyRenderPass(device.device, pass, nullptr);
+  }
+
+private:
+  void makePass() {
+    VkAttachmentDescription attachment{};
+    attachment.format = format;
+    attachment.samples = VK_SAMPLE_COUNT_1_BIT;
+    attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    attachment.finalLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    VkSubpassDescription subpass{};
+    subpass.colorAttachmentCount = 1;
+    subpass.pColorAttachments = &reference;
+    VkSubpassDependency dependencies[2]{};
+    dependencies[0].srcSubpass = dependencies[1].dstSubpass = VK_SUBPASS_EXTERNAL;
+    dependencies[0].srcStageMask = dependencies[1].dstStageMask = VK_PIPELINE_STAGE_TRANSFER_BIT;
+    dependencies[0].dstStageMask = dependencies[1].srcStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
+    dependencies[0].dstAccessMask = dependencies[1].srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+    dependencies[1].dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
+    VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
+    info.attachmentCount = info.subpassCount = 1;
+    info.pAttachments = &attachment;
+    info.pSubpasses = &subpass;
+    info.dependencyCount = 2;
+    info.pDependencies = dependencies;
+    sdl2::check(vkCreateRenderPass(device.device, &info, nullptr, &pass), "render pass");
+  }
+  void makeFramebuffer() {
+    VkFramebufferCreateInfo framebufferInfo{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
+    framebufferInfo.renderPass = pass;
+    framebufferInfo.attachmentCount = 1;
+    framebufferInfo.pAttachments = &view;
+    framebufferInfo.width = width;
+    framebufferInfo.height = height;
+    framebufferInfo.layers = 1;
+    sdl2::check(vkCreateFramebuffer(device.device, &framebufferInfo, nullptr, &framebuffer), "framebuffer");
+  }
+};
+
 } // namespace gpgp::test

@@ -239,8 +239,14 @@ Result<void> Canvas::prepare(VkCommandBuffer commandBuffer, const GpgpCanvasInfo
   const uint32_t tilesX = divide(width, shader::kTileSize), tilesY = divide(height, shader::kTileSize),
                  tiles = tilesX * tilesY;
   const Look look = lookOf(*gathered, info, sizes_, tiles);
-  const KeptRecording::Whole whole{settingsOf(info, pictured), look.bits(), layered ? layersOf(planner, *gathered) : 0,
-                                   recordings_ + 1, gathered->complete()};
+  KeptRecording::Whole whole;
+  whole.number = recordings_ + 1;
+  if (kept) {
+    whole.settings = settingsOf(info, pictured);
+    whole.shaders = look.bits();
+    whole.layers = layered ? layersOf(planner, *gathered) : 0;
+    whole.complete = gathered->complete();
+  }
   GpgpCanvasRedraw redraw = GPGP_CANVAS_REDRAW_NOT_ASKED;
   if (info.keep) redraw = kept->compare(whole, broken_);
   if (redraw == GPGP_CANVAS_REDRAW_NONE && losesTarget(info)) redraw = GPGP_CANVAS_REDRAW_SETTINGS;

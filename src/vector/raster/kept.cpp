@@ -6,6 +6,20 @@ namespace gpgp::vector {
 namespace {
 constexpr uint32_t kNone = UINT32_MAX;
 constexpr uint32_t kProbes = 64; // of match()'s table: where many things are equal, some count as changed
+
+/// Whether `is` holds for one of the words that a box has bits in. Takes a word's index and the box's bits in it.
+template <class Is> bool anyWord(const TileBox& box, uint32_t inRow, const Is& is) {
+  if (box.left >= box.right) return false;
+  const uint32_t first = box.left / 32u, last = (box.right - 1u) / 32u;
+  for (uint32_t row = box.top; row < box.bottom; ++row)
+    for (uint32_t word = first; word <= last; ++word) {
+      uint32_t bits = ~0u;
+      if (word == first) bits &= ~0u << (box.left & 31u);
+      if (word == last) bits &= ~0u >> (31u - ((box.right - 1u) & 31u));
+      if (is(size_t(row) * inRow + word, bits)) return true;
+    }
+  return false;
+}
 } // namespace
 
 KeptRecording::KeptRecording(uint32_t most, std::pmr::memory_resource* memory)
@@ -37,28 +51,14 @@ const KeptRecording::Thing* KeptRecording::find(uint64_t hash) {
 }
 
 void KeptRecording::mark(const TileBox& box) {
-  if (box.left >= box.right) return;
-  const uint32_t first = box.left / 32u, last = (box.right - 1u) / 32u;
-  for (uint32_t row = box.top; row < box.bottom; ++row)
-    for (uint32_t word = first; word <= last; ++word) {
-      uint32_t bits = ~0u;
-      if (word == first) bits &= ~0u << (box.left & 31u);
-      if (word == last) bits &= ~0u >> (31u - ((box.right - 1u) & 31u));
-      bits_[size_t(row) * inRow_ + word] |= bits;
-    }
+  anyWord(box, inRow_, [&](size_t word, uint32_t bits) {
+    bits_[word] |= bits;
+    return false;
+  });
 }
 
 bool KeptRecording::meets(const TileBox& box) const {
-  if (box.left >= box.right) return false;
-  const uint32_t first = box.left / 32u, last = (box.right - 1u) / 32u;
-  for (uint32_t row = box.top; row < box.bottom; ++row)
-    for (uint32_t word = first; word <= last; ++word) {
-      uint32_t bits = bits_[size_t(row) * inRow_ + word];
-      if (word == first) bits &= ~0u << (box.left & 31u);
-      if (word == last) bits &= ~0u >> (31u - ((box.right - 1u) & 31u));
-      if (bits) return true;
-    }
-  return false;
+  return anyWord(box, inRow_, [&](size_t word, uint32_t bits) { return (bits_[word] & bits) != 0; });
 }
 
 /// Marks what is not in a longest sequence that things from `begin` on have in common with those of before.
