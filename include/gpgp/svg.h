@@ -99,7 +99,8 @@ typedef struct GpgpSvgSource {
   GpgpSvgTextFn textFn;
   void* textUserData;
   /** VkPhysicalDeviceLimits::maxStorageBufferRange of the devices that the drawing is for; 0: 2^32 - 1. A drawing whose
-   *  outlines need more bytes is refused (UNSUPPORTED) as soon as that is known, not after all of it was converted. */
+   *  outlines need more than four times as many bytes is refused (UNSUPPORTED) as soon as that is known, not after all
+   *  of it was converted. */
   uint32_t maxStorageBufferRange;
 } GpgpSvgSource;
 #define GPGP_SVG_SOURCE_INIT GPGP_INIT(GpgpSvgSource, GPGP_STRUCTURE_SVG_SOURCE)

@@ -242,7 +242,9 @@ typedef struct GpgpCanvasCreateInfo {
    *
    *  Assets share device buffers of at most VkPhysicalDeviceLimits::maxStorageBufferRange, and a recording binds at
    *  most 8 of them. Needing a ninth is an error. This can only happen with assets above 1 MiB, or with assets above 64
-   *  KiB that lie among some 100 MiB of others. */
+   *  KiB that lie among some 100 MiB of others. A drawing whose outlines exceed one buffer
+   *  lies in up to 5. A recording can place 64 such buffers of outlines, counted each time that the drawing is shown; a
+   *  drawing beyond, and everything painted after it, is left out and reported. */
   uint32_t maxDrawings;
   /** Glyphs of all texts in one recording, blanks not counted, at most 1048576; 0: 1024. 160 bytes each, and 48 more
    *  for every recording that can be in flight. */

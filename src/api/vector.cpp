@@ -51,7 +51,7 @@ GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCrea
     }
     const std::span edits(info->edits, info->editCount);
     const bool flattened = info->methods == 0 || (info->methods & GPGP_DRAWING_FLATTENED);
-    const uint64_t mostBytes = flattened ? (*context)->device.limits.maxStorageBufferRange : UINT64_MAX;
+    const uint64_t mostBytes = flattened ? outlineBytes((*context)->device.limits.maxStorageBufferRange) : UINT64_MAX;
     const auto make = [&]() -> Result<Drawing> {
       if (base) return replacePaths(base->kept()->drawing, edits, memory, mostBytes);
       if (info->paths)

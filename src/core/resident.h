@@ -18,7 +18,7 @@ public:
   void attach() override;
   void retire() override;
 
-  bool resident() const { return hasArrived(queued_.load(std::memory_order_acquire)); }
+  virtual bool resident() const { return hasArrived(queued_.load(std::memory_order_acquire)); }
   VkBuffer buffer() const { return buffer_ ? buffer_.handle() : place_.buffer; }
   VkDeviceSize bufferSize() const { return buffer_ ? buffer_.size() : place_.bufferSize; }
   VkDeviceSize offset() const { return place_.offset; } ///< in the buffer

@@ -21,7 +21,7 @@ struct Size {
 };
 
 void run(VectorRunner& runner, const Scene& scene, Size size, VectorRunner::Settings settings, int repeat,
-         const std::string& out, bool shapes) {
+         const std::string& out, bool shapes, bool keep) {
   const auto [width, height] = size;
   VectorMade made = scene.glyphs.empty() || shapes ? runner.makeDrawing(scene) : runner.makeText(scene);
   const GpgpDrawingInfo& facts = made.facts;
@@ -40,6 +40,15 @@ void run(VectorRunner& runner, const Scene& scene, Size size, VectorRunner::Sett
   for (const auto& [name, time] : drawn.passes)
     if (time > 0.0012) std::printf(" %s %.4f", name.c_str(), time);
   std::printf("\n");
+  settings.keep = keep;
+  for (const double share : {0.01, 0.0}) { // of the text's glyphs, one after another
+    if (!keep || (share > 0 && !made.item.glyphCount)) continue;
+    settings.edits = static_cast<uint32_t>(share * made.item.glyphCount);
+    const VectorDrawn kept = runner.draw(made, scene, width, height, settings, repeat);
+    std::printf("  kept, %u glyphs change: %u of %u tiles, recorded in %.1f us, GPU %.4f ms (%.0f %%)\n",
+                settings.edits, kept.tilesDrawn, kept.tiles, kept.microseconds, kept.milliseconds,
+                100 * kept.milliseconds / drawn.milliseconds);
+  }
   std::fflush(stdout);
   if (out.empty()) return;
   host::writePng(out + "/" + scene.name + ".png", host::fromPremultiplied(width, height, drawn.pixels));
@@ -62,16 +71,18 @@ Size sizeOf(const std::string& text) { // "1024" or "1920x1080"
 } // namespace
 
 const char* const kUsage =
-    "vector_bench [--repeat N] [--least] [--size PIXELS | WxH] [--samples N] [--out FOLDER] [--shapes] [SCENE]...\n"
+    "vector_bench [--repeat N] [--least] [--size PIXELS | WxH] [--samples N] [--out FOLDER] [--shapes] [--keep] "
+    "[SCENE]...\n"
     "  --least   prints least times instead of medians, for machines that do other work as well\n"
     "  --shapes  draws pages as one drawing instead of a text\n"
+    "  --keep    also records again what did not change, and pages of which one glyph in a hundred changes\n"
     "  SCENE     map contours page live drops embrace clipart botanical plan feather panels, or FILE.svg\n";
 
 int runBench(Arguments arguments) {
   int repeat = 20;
   Size size{1024, 1024};
   uint32_t samples = 16;
-  bool shapes = false, least = false;
+  bool shapes = false, least = false, keep = false;
   std::string out;
   std::vector<Scene> scenes;
   while (arguments.next()) {
@@ -88,6 +99,8 @@ int runBench(Arguments arguments) {
       out = arguments.value();
     else if (word == "--shapes")
       shapes = true;
+    else if (word == "--keep")
+      keep = true;
     else
       scenes.push_back(sceneOf(arguments.name()));
   }
@@ -96,7 +109,7 @@ int runBench(Arguments arguments) {
   std::printf("device %s, %d records, %s\n", device.name().c_str(), repeat, least ? "least times" : "medians");
   VectorRunner runner(device);
   for (const Scene& scene : scenes)
-    run(runner, scene, size, {.samples = samples, .blendSrgb = false, .least = least}, repeat, out, shapes);
+    run(runner, scene, size, {.samples = samples, .blendSrgb = false, .least = least}, repeat, out, shapes, keep);
   return 0;
 }
 

@@ -19,7 +19,9 @@ VectorRunner::~VectorRunner() {
 void VectorRunner::closeCanvas() {
   device_.waitIdle();
   device_.vk().vkDestroyQueryPool(device_.device(), queries_, nullptr);
+  if (history_) gpgpDestroyHistory(history_);
   if (canvas_) gpgpDestroyRecorder(canvas_);
+  history_ = nullptr;
   queries_ = VK_NULL_HANDLE;
   canvas_ = nullptr;
 }
@@ -74,6 +76,9 @@ void VectorRunner::openCanvas(uint32_t largest, uint32_t maxPaths, uint32_t maxG
   info.maxGlyphs = maxGlyphs;
   info.maxTileEntries = 1 << 19;
   expect(gpgpCreateCanvas(context_, &info, &canvas_), "gpgpCreateCanvas");
+  GpgpCanvasHistoryCreateInfo keeps = GPGP_CANVAS_HISTORY_CREATE_INFO_INIT;
+  keeps.maxKept = maxPaths + maxGlyphs;
+  expect(gpgpCreateCanvasHistory(context_, &keeps, &history_), "gpgpCreateCanvasHistory");
   const GpgpPrewarmInfo prewarm = GPGP_PREWARM_INFO_INIT;
   expect(gpgpPrewarm(canvas_, &prewarm), "gpgpPrewarm");
   uint32_t passes = 0;
@@ -102,6 +107,8 @@ VectorDrawn VectorRunner::draw(VectorMade& made, const Scene& scene, uint32_t wi
     const bool split = i % 2 == 0;
     for (size_t k = 0; scene.changes && k < made.text.size(); ++k) // another string of the same glyphs
       made.text[k].glyph = made.glyphs[(k * 7 + k / 11 + static_cast<size_t>(i)) % made.glyphs.size()];
+    for (size_t k = 0; k < std::min<size_t>(settings.edits, made.text.size()); ++k)
+      made.text[k].glyph = made.glyphs[(k + static_cast<size_t>(i)) % made.glyphs.size()];
     frame_ += 2;
     const GpgpFrame frame{frame_ - 1, frame_ - 2}, done{frame_, frame_ - 1};
     expect(gpgpAdvance(context_, &frame), "gpgpAdvance");
@@ -118,8 +125,11 @@ VectorDrawn VectorRunner::draw(VectorMade& made, const Scene& scene, uint32_t wi
       info.samples = settings.samples;
       info.exactArea = settings.exactArea;
       std::fill_n(info.background, 4, 1.0f);
-      info.target = target.target(
-          {}, {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_IMAGE_LAYOUT_GENERAL});
+      if (settings.keep) info.history = history_;
+      info.keep = settings.keep && i > 0;
+      const GpgpAccess drawn{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
+                             VK_IMAGE_LAYOUT_GENERAL};
+      info.target = target.target(info.keep ? drawn : GpgpAccess{}, drawn);
       info.encodeSrgb = VK_TRUE;
       info.blendSrgb = settings.blendSrgb;
       vk.vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, passes + 1);
@@ -137,6 +147,8 @@ VectorDrawn VectorRunner::draw(VectorMade& made, const Scene& scene, uint32_t wi
       std::exit(1);
     }
     result.entries = report.tileEntries;
+    result.tiles = report.tiles;
+    result.tilesDrawn = report.tilesDrawn;
     const uint32_t count = split ? passes + 1 : 2;
     std::vector<uint64_t> times(count);
     host::check(vk.vkGetQueryPoolResults(device_.device(), queries_, split ? 0 : passes + 1, count, count * 8,

@@ -27,6 +27,7 @@ struct VectorDrawn {
   double microseconds = 0;                            ///< CPU, of recording
   std::vector<std::pair<std::string, double>> passes; ///< milliseconds of each, in order
   uint32_t entries = 0;                               ///< in tile lists
+  uint32_t tiles = 0, tilesDrawn = 0;                 ///< of the last record
   std::vector<uint8_t> pixels;                        ///< RGBA, sRGB over white
 };
 
@@ -48,6 +49,10 @@ public:
     uint32_t samples = 16;
     bool exactArea = true, blendSrgb = true;
     bool least = false; ///< least times instead of medians
+    /// Whether a history keeps what did not change, and how many of a text's glyphs change from record to record, all
+    /// beside each other.
+    bool keep = false;
+    uint32_t edits = 0;
   };
   /// The scene fitted into the picture, at its top left. Medians of `repeat` records; passes are timed in records of
   /// their own, as timestamps between them take time.
@@ -62,6 +67,7 @@ private:
   GpgpRecorder canvas_ = nullptr;
   std::vector<const char*> names_; // of the canvas' passes
   VkQueryPool queries_ = VK_NULL_HANDLE;
+  GpgpHistory history_ = nullptr;
   uint64_t frame_ = 0;
 };
 

@@ -126,8 +126,10 @@ struct CpuTest : CanvasTest {
     const auto packed = vector::packDrawing(*converted, vector::makeOutlines(*converted, memory), memory);
     const core::Context* owner = nullptr;
     std::vector<vec4>& table = tables[static_cast<const vector::DrawingAsset*>(api::objectOf(drawing, &owner))];
-    table.assign(packed.bytes.size() / sizeof(vec4), {});
+    table.assign((packed.bytes.size() + packed.segments.size() * sizeof packed.segments[0]) / sizeof(vec4), {});
     std::memcpy(table.data(), packed.bytes.data(), packed.bytes.size());
+    std::memcpy(table.data() + packed.bytes.size() / sizeof(vec4), packed.segments.data(),
+                packed.segments.size() * sizeof packed.segments[0]);
     if (drawingMethods & GPGP_DRAWING_PATCHES) {
       const auto patches = vector::makeTilePatches(*converted, memory);
       EXPECT_TRUE(patches);

@@ -26,8 +26,7 @@ PassBuilder::PassBuilder(const CanvasSizes& canvas, const core::Device& device, 
   image8 = list.add({"target", image, 0, true});
   image16 = list.add({"target", image, 0, true});
   const ItemBudgets& room = sizes.items;
-  const VkDeviceSize heads = sizeof(CanvasHeader) + shader::kSlots * sizeof(SlotRecord),
-                     placed = VkDeviceSize(room.items) + room.glyphs + room.shapes,
+  const VkDeviceSize heads = sizeof(CanvasHeader) + shader::kSlots * sizeof(SlotRecord), placed = maxPlacements(room),
                      shapeBytes = room.shapes * VkDeviceSize(sizeof(shader::ShapeRecord) + sizeof(PaintRecord) +
                                                              2 * sizeof(StopRecord)) +
                                   room.items * VkDeviceSize(sizeof(shader::ItemClipRecord) + sizeof(LayerRecord)) +

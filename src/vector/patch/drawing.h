@@ -117,7 +117,8 @@ struct LeftEmpty {
 /// `mostBytes`: of its outlines on the GPU; UNSUPPORTED as soon as it is known that they need more.
 core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::span<const GpgpPathGroup> groups,
                                   std::pmr::memory_resource* memory, const GpgpJobSystem* jobs = nullptr,
-                                  std::pmr::vector<LeftEmpty>* leftEmpty = nullptr, uint64_t mostBytes = UINT32_MAX);
+                                  std::pmr::vector<LeftEmpty>* leftEmpty = nullptr,
+                                  uint64_t mostBytes = outlineBytes(0));
 
 /// The drawing of paths in painting order; the same with and without jobs, which then call the memory resource side by
 /// side. Errors name the path, `first` being the first one; with `leftEmpty`, paths that cross themselves too often go
@@ -134,7 +135,7 @@ uint32_t clipPaths(const Drawing& drawing);
 /// and layer, and a page that is not just the ink stays. Errors name the edit or the path. `mostBytes`: as above, of
 /// the paths that are replaced.
 core::Result<Drawing> replacePaths(const Drawing& base, std::span<const GpgpPathEdit> edits,
-                                   std::pmr::memory_resource* memory, uint64_t mostBytes = UINT32_MAX);
+                                   std::pmr::memory_resource* memory, uint64_t mostBytes = outlineBytes(0));
 
 /// FNV-1a over 8-byte words: every input bit reaches the result.
 uint64_t checksum(std::span<const std::byte> bytes);

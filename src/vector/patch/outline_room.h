@@ -15,11 +15,17 @@
 
 namespace gpgp::vector {
 
+/// In how many buffers the outlines of a drawing may lie.
+constexpr uint32_t kMaxOutlineBuffers = 4;
+/// How many bytes they may have, by what the device binds at once; 0: what any device does.
+constexpr uint64_t outlineBytes(uint32_t maxStorageBufferRange) {
+  return uint64_t(maxStorageBufferRange ? maxStorageBufferRange : UINT32_MAX) * kMaxOutlineBuffers;
+}
+
 /// What outlines may take. Paths that are converted side by side take from the same room.
 class OutlineRoom {
 public:
-  /// No device binds more than the default: VkPhysicalDeviceLimits::maxStorageBufferRange has 32 bits.
-  explicit OutlineRoom(uint64_t bytes = UINT32_MAX) : bytes_(bytes) {}
+  explicit OutlineRoom(uint64_t bytes = outlineBytes(0)) : bytes_(bytes) {}
 
   /// Whether there is room for so many segments besides those that were taken.
   bool has(uint64_t segments) const { return taken_.load(std::memory_order_relaxed) + segments <= most(); }
@@ -30,7 +36,7 @@ public:
   }
   core::Error error() const {
     return core::makeError(GPGP_ERROR_UNSUPPORTED,
-                           "the drawing's outlines need more than %llu bytes, which is what a device binds at most",
+                           "the drawing's outlines need more than %llu bytes, which is what a recording can bind",
                            static_cast<unsigned long long>(bytes_));
   }
 

@@ -93,7 +93,8 @@ uint64_t layersOf(const LayerPlanner& planner, const Gather& gather) {
   hash.add(operations[0].a).add(operations[0].result); // the rest of it is not the plan's
   hash.addBytes(operations.data() + 1, (operations.size() - 1) * sizeof operations[0]);
   for (const core::Step& step : planner.steps()) hash.add(step);
-  for (const core::Resident* asset : gather.assets()) hash.add(asset->handle).add(asset->handle->generation);
+  for (const core::Resident* asset : gather.assets())
+    if (asset->handle) hash.add(asset->handle).add(asset->handle->generation); // else it is a page of one that has
   return hash.value() | 1;
 }
 

@@ -8,7 +8,7 @@
 namespace gpgp::vector {
 
 DrawingTables packDrawing(const Drawing& drawing, const Outlines& outlines, std::pmr::memory_resource* memory) {
-  DrawingTables tables{std::pmr::vector<std::byte>(memory), 0, {}, 0, std::pmr::vector<uint32_t>(memory)};
+  DrawingTables tables(memory);
   const auto add = [&bytes = tables.bytes](const auto& records) { // returns where, in vec4
     const auto part = std::as_bytes(std::span(records));
     const size_t at = bytes.size() / sizeof(shader::vec4);
@@ -16,7 +16,8 @@ DrawingTables packDrawing(const Drawing& drawing, const Outlines& outlines, std:
     return static_cast<uint32_t>(at);
   };
   // Runs are drawings of their own: paths count from the run's first one.
-  std::pmr::vector<shader::SegmentRecord> segments(outlines.segments.begin(), outlines.segments.end(), memory);
+  std::pmr::vector<shader::SegmentRecord>& segments = tables.segments;
+  segments.assign(outlines.segments.begin(), outlines.segments.end());
   std::pmr::vector<ClipRecord> clips(drawing.clips.begin(), drawing.clips.end(), memory);
   for (const LayerRun& run : drawing.plan.runs) {
     const uint32_t begin = run.firstPath, end = begin + run.pathCount;
@@ -25,7 +26,6 @@ DrawingTables packDrawing(const Drawing& drawing, const Outlines& outlines, std:
     for (size_t i = 0; i < clips.size(); ++i)
       if (drawing.clips[i].firstPath >= begin && drawing.clips[i].firstPath < end) clips[i].firstPath -= begin;
   }
-  add(segments);
   std::pmr::vector<shader::BoxedPath> paths(memory);
   for (size_t i = 0; i < drawing.paths.size(); ++i) paths.push_back({outlines.boxes[i], drawing.paths[i]});
   tables.paths = add(paths);
@@ -40,6 +40,15 @@ DrawingTables packDrawing(const Drawing& drawing, const Outlines& outlines, std:
     tables.lattices.push_back(add(lattice));
   }
   return tables;
+}
+
+core::Result<core::Unique<SegmentPage>> SegmentPage::create(core::Context& context, const char* label,
+                                                            std::span<const shader::SegmentRecord> segments) {
+  auto page = core::makeUnique<SegmentPage>(context.host(), context, label);
+  const auto from = std::as_bytes(segments);
+  std::pmr::vector<std::byte> bytes(from.begin(), from.end(), &context.host());
+  if (auto ok = page->makeResident(GPGP_SERVICE_VECTOR, std::move(bytes), 16, Room::shared); !ok) return ok.error();
+  return page;
 }
 
 core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& context, const char* label,
@@ -65,8 +74,7 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
   for (const LayerRecord& layer : drawing.layers) asset->layerDepth_ = std::max(asset->layerDepth_, layer.depth);
   std::copy_n(drawing.bounds, 4, asset->bounds_);
   std::copy_n(drawing.viewport, 4, asset->viewport_);
-  DrawingTables tables{
-      std::pmr::vector<std::byte>(&context.host()), 0, {}, 0, std::pmr::vector<uint32_t>(&context.host())};
+  DrawingTables tables(&context.host());
   if (flattened) tables = packDrawing(drawing, outlines, &context.host());
   if (methods & GPGP_DRAWING_IN_PASS) {
     auto patches =
@@ -98,14 +106,12 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
     asset->tilePatchEnds_.assign(patches->ends.begin(), patches->ends.end());
   }
   if (!drawing.plan.empty()) asset->setLayers(drawing, outlines);
-  if (tables.bytes.size() > context.device.limits.maxStorageBufferRange)
-    return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing has %zu bytes, but this device binds at most %u",
-                           tables.bytes.size(), context.device.limits.maxStorageBufferRange);
+  if (auto ok = asset->placeSegments(tables); !ok) return ok.error();
   if (auto ok = asset->makeResident(GPGP_SERVICE_VECTOR, std::move(tables.bytes), 16, Room::shared); !ok)
     return ok.error();
   // From here on, what lies in the buffer is counted from its beginning.
   const uint32_t first = static_cast<uint32_t>(asset->offset() / sizeof(shader::vec4));
-  asset->segmentTable_ = first;
+  asset->segmentTable_ += first;
   asset->pathTable_ = first + tables.paths;
   asset->patchWords_ += first;
   asset->tilePatchTable_ += first;
@@ -118,6 +124,46 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
     asset->hit_.emplace(Hit{std::move(outlines), std::move(drawing.paths), std::move(drawing.clips)});
   if (editable) asset->kept_.emplace(Kept{std::move(drawing), std::move(outlines)});
   return asset;
+}
+
+/// Behind the other tables, or in pages where that is more than the device binds.
+core::Result<void> DrawingAsset::placeSegments(DrawingTables& tables) {
+  const std::span<const shader::SegmentRecord> segments(tables.segments);
+  const size_t most = context.device.limits.maxStorageBufferRange, ofPage = most / sizeof segments[0];
+  const bool paged = tables.bytes.size() + segments.size_bytes() > most;
+  if (paged && (tables.bytes.size() > most || segments.size() > ofPage * kMaxOutlineBuffers))
+    return core::makeError(GPGP_ERROR_UNSUPPORTED,
+                           "the drawing has %zu bytes of outlines and %zu of other tables, but this device binds at "
+                           "most %zu at once, and %u times as much of outlines",
+                           segments.size_bytes(), tables.bytes.size(), most, kMaxOutlineBuffers);
+  if (!paged) {
+    segmentTable_ = static_cast<uint32_t>(tables.bytes.size() / sizeof(shader::vec4));
+    const auto bytes = std::as_bytes(segments);
+    tables.bytes.insert(tables.bytes.end(), bytes.begin(), bytes.end());
+    return {};
+  }
+  for (size_t begin = 0; begin < segments.size(); begin += ofPage) {
+    const size_t count = std::min(ofPage, segments.size() - begin);
+    auto page = SegmentPage::create(context, label.text, segments.subspan(begin, count));
+    if (!page) return page.error();
+    (*page)->end = static_cast<uint32_t>(begin + count);
+    pages_.push_back(std::move(*page));
+  }
+  return {};
+}
+
+void DrawingAsset::attach() {
+  Resident::attach();
+  for (const auto& page : pages_) page->attach();
+}
+
+void DrawingAsset::retire() {
+  Resident::retire();
+  for (const auto& page : pages_) page->retire();
+}
+
+bool DrawingAsset::resident() const {
+  return Resident::resident() && std::all_of(pages_.begin(), pages_.end(), [](const auto& p) { return p->resident(); });
 }
 
 void DrawingAsset::setLayers(const Drawing& drawing, const Outlines& outlines) {

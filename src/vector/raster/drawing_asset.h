@@ -9,15 +9,27 @@
 
 namespace gpgp::vector {
 
-/// A drawing's tables, one behind the other: segments, paths with their boxes, paints, stops, clips, layers.
+/// A drawing's tables, one behind the other: paths with their boxes, paints, stops, clips, layers. And its segments,
+/// which may lie elsewhere.
 struct DrawingTables {
+  explicit DrawingTables(std::pmr::memory_resource* memory) : bytes(memory), segments(memory), lattices(memory) {}
   std::pmr::vector<std::byte> bytes;
-  uint32_t paths;                      ///< where BoxedPaths begin, in vec4
-  shader::SlotRecord slots;            ///< and the other tables
+  std::pmr::vector<shader::SegmentRecord> segments;
+  uint32_t paths = 0;                  ///< where BoxedPaths begin, in vec4
+  shader::SlotRecord slots{};          ///< and the other tables
   uint32_t entries = 0;                ///< tables of filters, four numbers in each vec4
   std::pmr::vector<uint32_t> lattices; ///< of the steps of filters that make noise
 };
 DrawingTables packDrawing(const Drawing& drawing, const Outlines& outlines, std::pmr::memory_resource* memory);
+
+/// Segments of a drawing that has more than a device binds at once: as many as one buffer holds.
+class SegmentPage final : public core::Resident {
+public:
+  static core::Result<core::Unique<SegmentPage>> create(core::Context& context, const char* label,
+                                                        std::span<const shader::SegmentRecord> segments);
+  SegmentPage(core::Context& owner, const char* name) : Resident(owner, core::Kind::drawing, name) {}
+  uint32_t end = 0; ///< in the drawing's segments: those of the next page begin there
+};
 
 class DrawingAsset final : public core::Resident {
 public:
@@ -40,7 +52,10 @@ public:
                                                          std::span<const GpgpPathEdit> edits = {});
   DrawingAsset(core::Context& owner, const char* name)
       : Resident(owner, core::Kind::drawing, name), plan_(&owner.host()), layerBounds_(&owner.host()),
-        lattices_(&owner.host()), ends_(&owner.host()), tilePatchEnds_(&owner.host()) {}
+        lattices_(&owner.host()), ends_(&owner.host()), tilePatchEnds_(&owner.host()), pages_(&owner.host()) {}
+  void attach() override;
+  void retire() override;
+  bool resident() const override;
 
   /// How many segments the first n paths have.
   uint32_t segments(size_t paths) const { return paths ? ends_[paths - 1] : 0; }
@@ -64,8 +79,10 @@ public:
   const LayerBounds& layerBounds() const { return layerBounds_; }
   uint32_t tableOf(uint32_t entry) const { return entryTable_ + entry / 4; } ///< of a filter, in vec4
   uint32_t latticeOf(uint32_t step) const { return lattices_[step]; }        ///< of a filter's noise, likewise
+  /// Where its segments lie; none: in its own buffer.
+  std::span<const core::Unique<SegmentPage>> pages() const { return pages_; }
   /// A part that is placed by itself: where its segments and paths begin in its buffer, in vec4, and how many there
-  /// are.
+  /// are. Where there are pages, its segments begin in one of them.
   struct Run {
     uint32_t segmentTable, pathTable, firstPath, paths;
   };
@@ -90,6 +107,7 @@ public:
   const float* viewport() const { return viewport_; }
 
 private:
+  core::Result<void> placeSegments(DrawingTables& tables);
   void setLayers(const Drawing& drawing, const Outlines& outlines);
   LayerPlan plan_;
   LayerBounds layerBounds_;
@@ -97,6 +115,7 @@ private:
   std::pmr::vector<uint32_t> lattices_;
   std::pmr::vector<uint32_t> ends_;          // of segments, by path
   std::pmr::vector<uint32_t> tilePatchEnds_; // of patches, by path
+  std::pmr::vector<core::Unique<SegmentPage>> pages_;
   uint32_t tilePatchTable_ = 0, tileCurveTable_ = 0;
   std::optional<Kept> kept_; // where it is editable
   struct Hit {

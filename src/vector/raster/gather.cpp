@@ -172,7 +172,7 @@ Result<void> Gather::addLayered(const DrawingAsset& drawing, uint32_t firstImage
     const Chain inside{{float(box.left), float(box.top), float(box.right), float(box.bottom)}, 0, false};
     const uint32_t source = addSource(run.map, run.opacity, firstImage, inside);
     if (source == kNone && !full_) continue; // covers nothing
-    addRun(drawing, run.run, source, *slot);
+    if (auto ok = addRun(drawing, run.run, source, *slot); !ok) return ok;
   }
   return {};
 }
@@ -192,23 +192,61 @@ void Gather::addPatches(const DrawingAsset& drawing, uint32_t first, uint32_t en
   used_.patches += count;
 }
 
+/// The segments of a run from `begin` to `end`, which lie in pages: a placement for each page, without paths. Those of
+/// the run follow at once, in a placement without segments. False where there is no room.
+Result<bool> Gather::addPages(const DrawingAsset& drawing, uint32_t begin, uint32_t end, uint32_t source) {
+  uint32_t first = 0; // of the page
+  for (const auto& page : drawing.pages()) {
+    const uint32_t from = std::max(begin, first), to = std::min(end, page->end);
+    if (from < to) {
+      const auto slot = bind(*page, {});
+      if (!slot) return slot.error();
+      if (*slot == kNone || used_.pages == kMaxPlacedPages) return false;
+      ++used_.pages;
+      placed_[used_.placements++] = {0,
+                                     0,
+                                     1,
+                                     source | *slot << shader::kSlotBit,
+                                     {0, 0, 0, 1},
+                                     used_.segments,
+                                     used_.paths,
+                                     static_cast<uint32_t>(page->offset() / sizeof(shader::vec4)) +
+                                         (from - first) * uint32_t(sizeof(shader::SegmentRecord) / 16),
+                                     0};
+      used_.segments += to - from;
+    }
+    first = page->end;
+  }
+  return true;
+}
+
 /// As many of a run's first paths as there is room for.
-void Gather::addRun(const DrawingAsset& drawing, uint32_t index, uint32_t source, uint32_t slot) {
+Result<void> Gather::addRun(const DrawingAsset& drawing, uint32_t index, uint32_t source, uint32_t slot) {
   const DrawingAsset::Run run = drawing.run(index);
   const uint32_t paths = full_ ? 0 : std::min(run.paths, budgets_.paths - used_.paths);
   pathsDropped_ += run.paths - paths;
   full_ = full_ || paths < run.paths;
-  if (paths == 0) return;
+  if (paths == 0) return {};
   const ItemRecord* const item = &tables_.sources[source];
   const auto state = [&](StateHash& hash) {
     hash.add(identityOf(drawing)).add(index).add(paths);
     for (uint32_t i = 0; i < drawing.images(); ++i) addImage(hash, uint64_t(item->firstImage) + i);
   };
-  if (!shows(source, state, [&] { return planner_ ? TileBox{} : tilesOf(*item, drawing.ink(), kNoFrame); })) return;
+  if (!shows(source, state, [&] { return planner_ ? TileBox{} : tilesOf(*item, drawing.ink(), kNoFrame); })) return {};
   gradients = gradients || drawing.gradients();
   images = images || drawing.images();
   groups = groups || drawing.groups();
   const bool patches = patched_ && (drawing.methods() & GPGP_DRAWING_PATCHES);
+  const uint32_t begin = drawing.segments(run.firstPath), end = drawing.segments(run.firstPath + paths);
+  if (!patches && !drawing.pages().empty()) {
+    const auto placed = addPages(drawing, begin, end, source);
+    if (!placed) return placed.error();
+    if (!*placed) {
+      full_ = true;
+      pathsDropped_ += paths;
+      return {};
+    }
+  }
   if (patches) addPatches(drawing, run.firstPath, run.firstPath + paths);
   placed_[used_.placements++] = {0,
                                  0,
@@ -219,8 +257,9 @@ void Gather::addRun(const DrawingAsset& drawing, uint32_t index, uint32_t source
                                  used_.paths,
                                  run.segmentTable,
                                  run.pathTable};
-  if (!patches) used_.segments += drawing.segments(run.firstPath + paths) - drawing.segments(run.firstPath);
+  if (!patches && drawing.pages().empty()) used_.segments += end - begin;
   used_.paths += paths;
+  return {};
 }
 
 Result<void> Gather::add(uint32_t index, const ItemAsset& asset) {
@@ -249,15 +288,11 @@ Result<void> Gather::addDrawing(const DrawingAsset& drawing, const Map& map, flo
                  shader::kMaxLayerDepth);
   const uint32_t source = addSource(map, opacity, firstImage, clip);
   if (source == kNone && !full_) return {}; // covers nothing
-  if (full_ || drawing.paths() == 0 || used_.paths == budgets_.paths) {
-    addRun(drawing, 0, source, 0);
-    return {};
-  }
+  if (full_ || drawing.paths() == 0 || used_.paths == budgets_.paths) return addRun(drawing, 0, source, 0);
   const auto slot = bind(drawing, drawing.tables());
   if (!slot) return slot.error();
   full_ = *slot == kNone;
-  addRun(drawing, 0, source, *slot);
-  return {};
+  return addRun(drawing, 0, source, *slot);
 }
 
 /// Whether there is room. Its tables lie before all others.
@@ -471,7 +506,8 @@ Result<void> Gather::addLayeredList(const List& list, const GpgpCanvasItem& item
       const auto slot = bind(drawing, drawing.tables());
       if (!slot) return slot.error();
       const uint32_t source = addSource(run.map, run.opacity, static_cast<uint32_t>(image), inside);
-      if (source != kNone || full_) addRun(drawing, run.run, source, *slot);
+      if (source != kNone || full_)
+        if (auto ok = addRun(drawing, run.run, source, *slot); !ok) return ok;
       continue;
     }
     wantClips(list, run);

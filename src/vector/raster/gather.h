@@ -24,8 +24,15 @@ struct ItemAsset {
 struct ItemBudgets {
   uint32_t items, glyphs, shapes, paths;
 };
-/// Different drawings and glyph sets of a recording.
-constexpr uint32_t maxAssets(const ItemBudgets& budgets) { return std::min(budgets.items, shader::kMaxAssets); }
+/// Different drawings and glyph sets of a recording, and the pages of drawings, of which a buffer holds one.
+constexpr uint32_t maxAssets(const ItemBudgets& budgets) {
+  return std::min(budgets.items + shader::kMaxBuffers, shader::kMaxAssets);
+}
+/// Placements that stand for pages of drawings, beside those of items, glyphs and shapes.
+constexpr uint32_t kMaxPlacedPages = 64;
+constexpr size_t maxPlacements(const ItemBudgets& budgets) {
+  return size_t(budgets.items) + budgets.glyphs + budgets.shapes + kMaxPlacedPages;
+}
 
 /// Room for what one recording has, made once.
 struct ItemTables {
@@ -112,7 +119,8 @@ private:
                                 const Chain& clip, bool plain = true);
   core::Result<void> planDrawing(const DrawingAsset& drawing, const Map& map, float opacity, const Chain& own);
   void addPatches(const DrawingAsset& drawing, uint32_t first, uint32_t end);
-  void addRun(const DrawingAsset& drawing, uint32_t run, uint32_t source, uint32_t slot);
+  core::Result<void> addRun(const DrawingAsset& drawing, uint32_t run, uint32_t source, uint32_t slot);
+  core::Result<bool> addPages(const DrawingAsset& drawing, uint32_t begin, uint32_t end, uint32_t source);
   core::Result<void> addLayered(const DrawingAsset& drawing, uint32_t firstImage);
   bool lookAtPlain();
   void beginPlain();
@@ -178,6 +186,7 @@ private:
   uint32_t index_ = 0, entry_ = kNone; ///< of the item and of the list's command at hand
   struct Used {
     uint32_t paths = 0, segments = 0, patches = 0, placements = 0, smallGlyphs = 0, smallGlyphEntries = 0;
+    uint32_t pages = 0;  ///< placements that stand for them
     uint32_t glyphs = 0; ///< those without room, too
   } used_;
   uint32_t sourcesNeeded_ = 0, layersNeeded_ = 0, assetsNeeded_ = 0;

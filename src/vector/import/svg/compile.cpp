@@ -37,9 +37,9 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
   const std::vector<GpgpPath>& paths = views.paths;
   const auto parsed = Clock::now();
   std::pmr::vector<vector::LeftEmpty> leftEmpty(memory);
-  const uint64_t range = source.maxStorageBufferRange ? source.maxStorageBufferRange : UINT32_MAX;
+  const uint64_t outlines = vector::outlineBytes(source.maxStorageBufferRange);
   auto drawing = vector::makeDrawing(paths, views.groups, memory, source.jobSystem, &leftEmpty,
-                                     source.methods == GPGP_DRAWING_IN_PASS ? UINT64_MAX : range);
+                                     source.methods == GPGP_DRAWING_IN_PASS ? UINT64_MAX : outlines);
   const auto converted = Clock::now();
   if (!drawing) return fail(drawing.error().code, drawing.error().text);
   for (const vector::LeftEmpty& left : leftEmpty) {

@@ -28,7 +28,7 @@ struct ImportLimits {
   size_t depth = 200;        ///< of elements in each other, <use> included
   size_t elements = 500'000; ///< visited, copies by <use> included
   size_t paths = 250'000;
-  size_t points = 8'000'000;            ///< of all paths
+  size_t points = 32'000'000;           ///< of all paths
   size_t matches = 20'000'000;          ///< style selectors and declarations looked at
   size_t layers = 4096;                 ///< that blend, are masked or filtered, and their masks
   size_t filterSteps = 32'768;          ///< of all filters
