@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
 # Runs every test that uses a device, and the headline benchmarks, on one hardware GPU, and writes what came of them.
 #
-#   tests/hardware.sh pack FILE.tar.xz [PART...]   packs build/release for a machine that has a driver but no compiler: tests,
-#                                        benchmarks, the command, the libraries that they need, the validation layer,
-#                                        the test data, this script. PARTs of tests/data/fetched that are packed:
-#                                        svg models (default), fonts, w3c-svg, openclipart
+#   tests/hardware.sh pack FILE.tar.xz [--only REGEX] [PART...]   packs build/release for a machine that has a driver but
+#                                        no compiler: tests (those whose names match), benchmarks, the command, the
+#                                        libraries that they need, the validation layer, the test data, this script.
+#                                        PARTs of tests/data/fetched that are packed: svg models (default), fonts or
+#                                        one of them (fonts/DejaVuSans.ttf), w3c-svg, openclipart
 #   tests/hardware.sh run [OPTION...]    in the project's folder, or where such a file was unpacked:
 #     --device NAME     part of the device's name, or its index (default: $GPGP_DEVICE, else NVIDIA)
 #     --out FOLDER      hardware.json and a log for each test (default: build/hardware)
 #     --only REGEX      tests whose names match
 #     --jobs N          tests at once (default: half the processors)
 #     --no-benchmarks   tests alone
+#   tests/hardware.sh merge FILE...      one hardware.json of several, of runs of the same commit on the same device
 #   tests/hardware.sh hash               of shaders/ and of the code that records them, as in hardware.json
 #   tests/hardware.sh changed [FILE]     a sentence: whether they have changed since the run in FILE
 #                                        (default: docs/results/hardware.json, the last whole run; tests/run.sh asks)
@@ -48,14 +50,17 @@ changed() {
 }
 
 pack() {
-  local file=${1:?which file} programs=() stage
+  local file=${1:?which file} programs=() stage only=.
   shift
+  if [[ ${1:-} == --only ]]; then only=${2:?an expression} && shift 2; fi
   [[ $# -gt 0 ]] || set -- svg models
   [[ -f $list ]] || die "$list is missing: build the preset 'release' with tests first"
   stage=$(mktemp -d)
   # shellcheck disable=SC2064 # the folder as it is now
   trap "rm -rf '$stage'" EXIT
-  mapfile -t programs < <(cut -f2 "$list")
+  mapfile -t programs < <(grep -E "^($only)" "$list" | cut -f2)
+  local plugin=$build/integrations/unity/libgpgp_unity.so # loaded by unity_test
+  if [[ -f $plugin ]]; then programs+=("$PWD/$plugin"); fi
   for name in gpgp mini_engine record_bench convert_bench vector_bench vector_tables spawn_bench visibility_bench; do
     if [[ -x $build/$name ]]; then programs+=("$PWD/$build/$name"); fi
   done
@@ -78,7 +83,7 @@ pack() {
   mkdir -p "$stage/tests/data/fetched"
   local part
   for part in "$@"; do
-    if [[ -d tests/data/fetched/$part ]]; then cp -rL "tests/data/fetched/$part" "$stage/tests/data/fetched/"; fi
+    if [[ -e tests/data/fetched/$part ]]; then (cd tests/data/fetched && cp -rL --parents "$part" "$stage/tests/data/fetched/"); fi
   done
   {
     echo "root=$PWD"
@@ -182,6 +187,30 @@ run() {
   return "$failed"
 }
 
+merge() {
+  [[ $# -gt 0 ]] || die "which files"
+  local file facts
+  facts() { grep -E '^ "(device|driver|commit|hash)"' "$1"; }
+  for file in "$@"; do
+    [[ $(facts "$file") == "$(facts "$1")" ]] || die "$file and $1 are of different devices or commits"
+  done
+  joined() { sed -e 's/,$//' | sed -e '$!s/$/,/'; } # one entry a line
+  sed -n '1,/^ "date"/p' "$1"
+  echo ' "tests": {'
+  cat "$@" | grep -E '^  "[a-z0-9_]+": \{"passed"' | sort -u -t'"' -k2,2 | joined
+  printf ' },\n "benchmarks": ['
+  local first=yes
+  for file in "$@"; do
+    local entries
+    entries=$(sed '1,/^ "benchmarks": \[/d; /^ \]$/,$d' "$file")
+    [[ -n $entries ]] || continue
+    [[ $first == yes ]] || printf ','
+    first=no
+    printf '\n%s' "$entries"
+  done
+  printf '\n ]\n}\n'
+}
+
 # What docs/results names first of each service, each in less than two minutes.
 benchmarkCommands() {
   local svg=tests/data/fetched/svg
@@ -197,7 +226,7 @@ benchmarkCommands() {
 }
 
 case ${1:-} in
-pack | run | changed) "$@" ;;
+pack | run | changed | merge) "$@" ;;
 hash) sourceHash ;;
 -h | --help) usage ;;
 *) usage >&2 && exit 2 ;;

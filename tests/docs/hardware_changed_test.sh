@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # tests/hardware.sh changed, in a small repository of its own: no run on record, the same shaders, and shaders that have
-# changed since, committed or not.
+# changed since, committed or not. And tests/hardware.sh merge.
 #
 #   hardware_changed_test.sh SOURCE_DIR
 set -euo pipefail
@@ -41,4 +41,21 @@ expect "are those of"
 echo two >src/vector/file
 commit "how shaders are recorded"
 expect "have CHANGED since"
-echo "7 cases"
+
+# part NAME COMMIT: the record of a run of one test and one benchmark
+part() {
+  printf '{\n "device": "D",\n "driver": "1",\n "commit": "%s",\n "hash": "h",\n "date": "2026-01-02",\n "tests": {\n' "$2"
+  printf '  "%s": {"passed": 3, "failed": 0, "skipped": 0, "exit code": 0}\n },\n "benchmarks": [\n' "$1"
+  printf '  {"command": "%s", "output": [\n    "1 ms"]}\n ]\n}\n' "$1"
+}
+part a_test c >a.json
+part b_test c >b.json
+part b_test other >c.json
+merged=$(tests/hardware.sh merge a.json b.json)
+whole=$(part a_test c | sed -e '/"a_test": {/s/$/,\n  "b_test": {"passed": 3, "failed": 0, "skipped": 0, "exit code": 0}/' \
+  -e '/"1 ms"/s/$/,\n  {"command": "b_test", "output": [\n    "1 ms"]}/')
+[[ $merged == "$whole" ]] || { printf 'FAILED: merged\n%s\n' "$merged" >&2; exit 1; }
+[[ $(tests/hardware.sh merge a.json) == "$(cat a.json)" ]] || { echo "FAILED: one file merged" >&2; exit 1; }
+! tests/hardware.sh merge a.json c.json >merged 2>&1 || { echo "FAILED: other commits are merged" >&2; exit 1; }
+grep -q "different devices or commits" merged
+echo "10 cases"
