@@ -71,11 +71,13 @@ Size sizeOf(const std::string& text) { // "1024" or "1920x1080"
 } // namespace
 
 const char* const kUsage =
-    "vector_bench [--repeat N] [--least] [--size PIXELS | WxH] [--samples N] [--out FOLDER] [--shapes] [--keep] "
+    "vector_bench [--repeat N] [--least] [--size PIXELS | WxH] [--samples N] [--out FOLDER] [--shapes] [--keep] [--svg "
+    "FOLDER] "
     "[SCENE]...\n"
     "  --least   prints least times instead of medians, for machines that do other work as well\n"
     "  --shapes  draws pages as one drawing instead of a text\n"
     "  --keep    also records again what did not change, and pages of which one glyph in a hundred changes\n"
+    "  --svg     writes generated scenes as SVG instead\n"
     "  SCENE     map contours page live drops embrace clipart botanical plan feather panels, or FILE.svg\n";
 
 int runBench(Arguments arguments) {
@@ -83,7 +85,7 @@ int runBench(Arguments arguments) {
   Size size{1024, 1024};
   uint32_t samples = 16;
   bool shapes = false, least = false, keep = false;
-  std::string out;
+  std::string out, svg;
   std::vector<Scene> scenes;
   while (arguments.next()) {
     const std::string& word = arguments.word();
@@ -97,6 +99,8 @@ int runBench(Arguments arguments) {
       samples = arguments.number(1, 16);
     else if (word == "--out")
       out = arguments.value();
+    else if (word == "--svg")
+      svg = arguments.value();
     else if (word == "--shapes")
       shapes = true;
     else if (word == "--keep")
@@ -105,6 +109,9 @@ int runBench(Arguments arguments) {
       scenes.push_back(sceneOf(arguments.name()));
   }
   if (scenes.empty()) scenes = {streetMap(), contourMap(), page(), livePage()};
+  for (const Scene& scene : scenes)
+    if (!svg.empty()) writeSvg(scene, svg + "/" + scene.name + ".svg");
+  if (!svg.empty()) return 0;
   host::HeadlessDevice device;
   std::printf("device %s, %d records, %s\n", device.name().c_str(), repeat, least ? "least times" : "medians");
   VectorRunner runner(device);

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <random>
 #ifdef GPGP_WITH_CAIRO
 #include "../cairo_draw.h"
@@ -396,6 +397,38 @@ Scene sceneOf(const std::string& word, double arcs) {
   if (word == "panels") return panels(arcs);
   const auto bytes = host::readFile(word);
   return fromSvg(word, std::as_bytes(std::span(bytes)), arcs);
+}
+
+void writeSvg(const Scene& scene, const std::string& path) {
+  std::string svg;
+  char word[160];
+  const auto add = [&](const char* format, auto... values) {
+    svg.append(word, static_cast<size_t>(std::snprintf(word, sizeof word, format, values...)));
+  };
+  add("<svg xmlns='http://www.w3.org/2000/svg' width='%g' height='%g'>\n", scene.width, scene.height);
+  bool plain = scene.groups.empty();
+  for (const Shape& s : scene.shapes) {
+    plain = plain && !s.gradient;
+    const auto byte = [&](int k) {
+      const double c = static_cast<double>(s.color[k]);
+      return static_cast<unsigned>(255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055) + 0.5);
+    };
+    add("<path fill='#%02x%02x%02x' fill-opacity='%g' fill-rule='%s' d='", byte(0), byte(1), byte(2),
+        static_cast<double>(s.color[3]), s.rule == GPGP_FILL_EVEN_ODD ? "evenodd" : "nonzero");
+    const float* p = s.points.data();
+    for (const GpgpPathVerb verb : s.verbs) {
+      const int pairs = verb == GPGP_PATH_CLOSE ? 0 : verb == GPGP_PATH_CUBIC ? 3 : verb == GPGP_PATH_QUAD ? 2 : 1;
+      svg += verb == GPGP_PATH_MOVE ? 'M' : verb == GPGP_PATH_LINE ? 'L' : pairs == 3 ? 'C' : pairs == 2 ? 'Q' : 'Z';
+      for (int k = 0; k < 2 * pairs; ++k) add(k ? " %.7g" : "%.7g", static_cast<double>(*p++));
+    }
+    svg += "'/>\n";
+  }
+  svg += "</svg>\n";
+  std::ofstream file(path, std::ios::binary);
+  if (!plain || !(file << svg).flush()) {
+    std::fprintf(stderr, "%s: %s\n", path.c_str(), plain ? "cannot be written" : "only plain paths can be written");
+    std::exit(1);
+  }
 }
 
 size_t curvesOf(const Scene& scene) {

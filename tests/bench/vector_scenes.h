@@ -61,6 +61,9 @@ Scene blobs(int paths, int curves);
 /// the program where that is no SVG.
 Scene sceneOf(const std::string& word, double arcs = 1e-4);
 
+/// A generated scene as an SVG, so that the command can draw it. Ends the program where it has gradients or groups.
+void writeSvg(const Scene& scene, const std::string& path);
+
 /// Of the paths as they come: neither moves nor closing lines count.
 size_t curvesOf(const Scene& scene);
 
