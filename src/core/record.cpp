@@ -440,7 +440,8 @@ Result<void> Recorder::record(const Record& record) {
     if (pass.stepped) {
       for (const Step& step : steps) {
         const Pass& stepped = passes_.passes[step.pass];
-        passBarrier(vk, cmd, since ? since : 1u << static_cast<uint32_t>(stepped.kind), stepped.kindsAhead);
+        if (!step.alongside)
+          passBarrier(vk, cmd, since ? since : 1u << static_cast<uint32_t>(stepped.kind), stepped.kindsAhead);
         since = 1u << static_cast<uint32_t>(stepped.kind);
         ran_[step.pass] = true;
         beginLabel(cmd, stepped.name);

@@ -32,7 +32,8 @@ struct Binding {
 struct Step {
   uint32_t pass;
   std::array<uint32_t, 3> groups;
-  uint32_t constant; ///< push constant
+  uint32_t constant;      ///< push constant
+  uint32_t alongside = 0; ///< 1: it touches nothing that those since the last barrier do, and needs none
 };
 
 struct Record {
@@ -45,7 +46,7 @@ struct Record {
   std::array<std::span<const std::byte>, 11> constants = {}; ///< for the first constants resource, in a row
   uint32_t replacedShader = UINT32_MAX; ///< passes with this shader run another pipeline of the same layout
   VkPipeline replacement = VK_NULL_HANDLE;
-  std::span<const Step> steps; ///< in order, each behind a barrier; recorded where the first stepped pass lies
+  std::span<const Step> steps; ///< in order, behind barriers; recorded where the first stepped pass lies
   /// Where textures come in pages: all of them, those of the list again and again; their bindings are then not looked
   /// at. Passes that are not paged have the first page.
   std::span<const VkDescriptorImageInfo> pages;

@@ -110,6 +110,95 @@ GpgpLayer randomFilter(Scene& scene, std::mt19937& random, std::vector<std::vect
   return layer;
 }
 
+/// What of the pictures' memory an operation reads and writes: whole boxes, row by row.
+struct Touched {
+  std::vector<std::pair<size_t, size_t>> read, written;
+  explicit Touched(const shader::OperationRecord& o) {
+    const auto add = [](const shader::PictureRecord& p, std::vector<std::pair<size_t, size_t>>& to) {
+      for (int y = p.top; y < p.bottom && p.left < p.right; ++y) {
+        const size_t row = p.first + size_t(y - p.top) * p.stride;
+        to.push_back({row, row + size_t(p.right - p.left)});
+      }
+    };
+    add(o.a, read), add(o.b, read), add(o.c, read);
+    if (o.kind == shader::kOperationComposite) add(o.result, read);
+    add(o.result, written);
+  }
+  static bool meet(const std::vector<std::pair<size_t, size_t>>& a, const std::vector<std::pair<size_t, size_t>>& b) {
+    for (const auto& [first, last] : a)
+      for (const auto& [begin, end] : b)
+        if (first < end && begin < last) return true;
+    return false;
+  }
+  bool conflicts(const Touched& other) const {
+    return meet(written, other.written) || meet(written, other.read) || meet(read, other.written);
+  }
+};
+
+/// Of two operations that touch the same memory, the one that is listed first comes first, with a barrier between them;
+/// with room for all pictures, most operations share a barrier; without, each has its own. Pictures are the same.
+TEST_F(LayersCpuTest, OperationsSideBySideTouchNothingOfEachOther) {
+  constexpr uint32_t kSide = 256;
+  for (uint32_t seed = 0; seed < 4; ++seed) {
+    std::mt19937 random(seed);
+    std::vector<std::vector<float>> tables;
+    tables.reserve(256);
+    Scene scene;
+    for (int i = 0; i < 16; ++i) { // on a grid, some of them across their neighbours
+      GpgpLayer layer = i % 3 == 2 ? randomFilter(scene, random, tables)
+                                   : scene.filter({step(GPGP_FILTER_DROP_SHADOW, {2, 2, 3, 3, 0, 0, 0, 0.5f}),
+                                                   step(GPGP_FILTER_GAUSSIAN_BLUR, {1, 1}, 0, GPGP_FILTER_FIRST_STEP)});
+      if (i % 4 == 1) layer.blend = GPGP_BLEND_MULTIPLY;
+      const uint32_t group = scene.group(0, 0.8f, &layer);
+      const float x = static_cast<float>(i % 4) * 64 + 8, y = static_cast<float>(i / 4) * 64 + 8;
+      const float side = seed % 2 && i % 5 == 0 ? 90.f : 40.f;
+      scene.add(solid(x, y, x + side, y + side, {0.2f, 0.5f, 0.1f * static_cast<float>(i % 10), 1}), group);
+    }
+    const std::vector<GpgpPath> paths = scene.paths();
+    const GpgpAsset drawing = makeDrawing(paths, scene.groups);
+    std::vector<Rgba> pictures[2];
+    uint32_t needed = 0;
+    for (const bool tight : {false, true}) {
+      layerPixels = tight ? needed : 1 << 21;
+      makeLayerCanvas(kSide);
+      GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT;
+      pictures[tight] = raster({place(drawing)}, kSide, kSide, 4, &report);
+      ASSERT_EQ(report.base.status, GPGP_SUCCESS) << seed;
+      needed = report.layerPixels;
+      const vector::Canvas& own = ownCanvas();
+      const auto steps = own.steps();
+      std::vector<Touched> touched;
+      for (const shader::OperationRecord& o : own.operations()) touched.emplace_back(o);
+      ASSERT_EQ(steps.size() + 1, touched.size());
+      std::vector<uint32_t> place(touched.size(), 0), behind(touched.size(), 0); // in order; barriers up to it
+      uint32_t barriers = 0;
+      for (uint32_t k = 0; k < steps.size(); ++k) {
+        barriers += !steps[k].alongside;
+        EXPECT_EQ(place[steps[k].constant], 0u) << "twice";
+        place[steps[k].constant] = k + 1;
+        behind[steps[k].constant] = barriers;
+      }
+      EXPECT_FALSE(steps[0].alongside);
+      size_t conflicts = 0;
+      for (size_t i = 1; i < touched.size(); ++i)
+        for (size_t j = i + 1; j < touched.size(); ++j) {
+          if (!touched[i].conflicts(touched[j])) continue;
+          ++conflicts;
+          const auto inRaster = [&](size_t k) { return own.operations()[k].kind == shader::kOperationComposite; };
+          EXPECT_TRUE(tight || (inRaster(i) && inRaster(j)) || !Touched::meet(touched[i].written, touched[j].written))
+              << seed << ": operations " << i << " and " << j << " write the same memory";
+          EXPECT_LT(behind[i], behind[j]) << seed << ": operations " << i << " and " << j;
+        }
+      EXPECT_GT(conflicts, steps.size() / 2);
+      EXPECT_TRUE(tight ? barriers == steps.size() : barriers < steps.size() / 2)
+          << seed << ": " << barriers << " of " << steps.size();
+    }
+    ASSERT_EQ(pictures[0].size(), pictures[1].size());
+    EXPECT_EQ(std::memcmp(pictures[0].data(), pictures[1].data(), pictures[0].size() * sizeof(Rgba)), 0) << seed;
+    gpgpDestroyAsset(drawing);
+  }
+}
+
 TEST_F(LayersCpuTest, EveryPictureIsTheReferences) {
   layerPixels = 1 << 19;
   makeLayerCanvas();

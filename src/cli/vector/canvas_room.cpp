@@ -27,7 +27,7 @@ Measured<GpgpCanvasReport> drawPicture(Session& session, Canvas& canvas, const C
 }
 
 uint32_t firstLayerPixels(const host::HeadlessDevice& device, const Size& size) {
-  const uint64_t pixels = uint64_t(size.width + 128) * (size.height + 128) * 3;
+  const uint64_t pixels = uint64_t(size.width + 128) * (size.height + 128) * 4;
   return static_cast<uint32_t>(std::min<uint64_t>(pixels, device.properties().limits.maxStorageBufferRange / 8));
 }
 
@@ -47,8 +47,11 @@ std::optional<Canvas> largerCanvas(Session& session, GpgpCanvasCreateInfo& info,
       next.maxDrawings = std::max(info.maxDrawings, std::min(report.items, 65536u));
       if (report.tilePatches > report.tilePatchesGiven)
         next.maxTilePatches = std::min(report.tilePatches + report.tilePatches / 8, 1u << 28);
-      if (report.layerPixels != UINT32_MAX) // which no budget holds
-        next.maxLayerPixels = std::max(info.maxLayerPixels, std::min(report.layerPixels, 1u << 28));
+      if (report.layerPixels != UINT32_MAX && report.layerPixels > report.layerPixelsGiven) { // which no budget holds
+        const uint32_t most = std::min(1u << 28, session.device().properties().limits.maxStorageBufferRange / 8);
+        const uint32_t needed = std::min(report.layerPixels, 1u << 28);
+        next.maxLayerPixels = std::max(needed, std::min(needed * 2, most)); // with more, operations run side by side
+      }
       next.maxLayerOperations = std::max(info.maxLayerOperations, std::min(report.layerOperations, 65536u));
       if (report.imagePixels > report.imagePixelsGiven) next.maxImagePixels = std::min(report.imagePixels, 1u << 28);
       const bool layers = next.maxImagePixels != info.maxImagePixels || next.maxTilePatches > report.tilePatchesGiven ||

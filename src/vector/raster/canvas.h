@@ -29,6 +29,9 @@ public:
   std::span<const shader::OperationRecord> operations() const {
     return std::span(layers_.operations).first(operationCount_);
   }
+  std::span<const core::Step> steps() const {
+    return std::span(layers_.steps).first(operationCount_ ? operationCount_ - 1 : 0);
+  }
   /// Room for the assets of a recording, so that recording does not allocate.
   std::span<ItemAsset> assets(uint32_t count) { return std::span(assets_).first(count); }
 

@@ -173,6 +173,7 @@ Result<void> LayerPlanner::addLayered(const DrawingAsset& drawing, uint32_t slot
 }
 
 void LayerPlanner::finish() {
+  order();
   const auto resolve = [&](shader::PictureRecord& p) {
     if (p.pad1 == 0) return; // there is none
     if (p.stride == 0) {
