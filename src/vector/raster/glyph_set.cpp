@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 namespace gpgp::vector {
 namespace {
@@ -18,9 +19,17 @@ constexpr uint32_t kDefaultGlyphs = 4096;
 constexpr VkDeviceSize kDefaultBytes = VkDeviceSize(8) << 20;
 constexpr uint32_t kGenerations = 1u << (32 - GlyphSet::kPlaceBits);
 
+uint32_t countPaints(const Drawing& drawing, size_t firstPath, size_t end) {
+  uint32_t count = 0;
+  for (size_t i = firstPath; i < end; ++i) count += drawing.paths[i].paint != 0;
+  return count;
+}
+uint32_t divide(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
+} // namespace
+
 /// The outlines of glyphs in a row, and how many segments and vec4 of gradients there are up to the end of
 /// each path; and the glyphs' patches.
-struct Tables {
+struct GlyphSet::Tables {
   Outlines outlines;
   std::pmr::vector<uint64_t> gradients;
   std::pmr::vector<shader::uvec4> words;
@@ -68,13 +77,6 @@ public:
   }
   uint64_t sizeOf(size_t glyph, size_t path, uint32_t paths) const { return outlinesOf(path, paths) + wordsOf(glyph); }
 };
-uint32_t countPaints(const Drawing& drawing, size_t firstPath, size_t end) {
-  uint32_t count = 0;
-  for (size_t i = firstPath; i < end; ++i) count += drawing.paths[i].paint != 0;
-  return count;
-}
-uint32_t divide(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
-} // namespace
 
 GlyphSet::GlyphSet(core::Context& owner, const char* name)
     : Resident(owner, core::Kind::glyphSet, name), glyphs_(&owner.host()), places_(&owner.host()),
@@ -85,11 +87,12 @@ core::Result<core::Unique<GlyphSet>> GlyphSet::create(core::Context& context, co
   const GpgpDrawingMethods methods = info.methods ? info.methods : GPGP_DRAWING_FLATTENED;
   const size_t bakedGlyphs = baked ? baked->entries.size() : 0;
   VkDeviceSize bakedBytes = 0;
+  std::optional<Tables> tables;
   if (baked) {
-    const Tables tables(*baked, methods, context);
+    tables.emplace(*baked, methods, context);
     size_t path = 0;
     for (size_t i = 0; i < bakedGlyphs; ++i) {
-      bakedBytes += tables.sizeOf(i, path, baked->entries[i].paths) * 16;
+      bakedBytes += tables->sizeOf(i, path, baked->entries[i].paths) * 16;
       path += baked->entries[i].paths;
     }
   }
@@ -116,7 +119,7 @@ core::Result<core::Unique<GlyphSet>> GlyphSet::create(core::Context& context, co
   set->freeBlocks_.reserve(maxGlyphs + 2);
   set->freeBlocks_.push_back({0, set->capacity_});
   if (auto ok = set->makeGrowing(GPGP_SERVICE_VECTOR, maxBytes, Room::shared); !ok) return ok.error();
-  if (baked) set->add(*baked, 0);
+  if (baked) set->add(*baked, *tables, 0);
   return set;
 }
 
@@ -125,8 +128,11 @@ bool GlyphSet::evictable(const Glyph& glyph) const {
 }
 
 bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
+  return add(glyphs, Tables(glyphs, methods_, context), frame);
+}
+
+bool GlyphSet::add(const Glyphs& glyphs, const Tables& tables, uint64_t frame) {
   std::pmr::memory_resource* memory = &context.host();
-  const Tables tables(glyphs, methods_, context);
   std::pmr::vector<uint32_t> added(memory);
   added.reserve(glyphs.entries.size());
   reserveRanges(glyphs.entries.size());

@@ -62,6 +62,8 @@ public:
   static constexpr uint32_t kPlaceBits = 18, kMaxGlyphs = 1u << kPlaceBits;
 
 private:
+  struct Tables; ///< what glyphs are converted to
+  bool add(const Glyphs& glyphs, const Tables& tables, uint64_t frame);
   struct Block { // of the buffer, in vec4
     uint32_t first, size;
   };
