@@ -272,13 +272,13 @@ TEST(Threads, FramesAreRecordedBesideLoaders) {
   for (const auto& scenario : scenarios) scenario->destroy();
 }
 
-/// Host memory that a loading thread only gets when a whole frame has gone by: for its first allocations, and then now
-/// and again.
+/// Host memory that a loading thread only gets when a whole frame has gone by: the first times, and then after each
+/// eighth more allocations.
 struct FramesBetween {
   std::mutex mutex;
   std::condition_variable changed;
   std::thread::id loader;
-  uint64_t allocations = 0, asked = 0, done = 0, stuck = 0;
+  uint64_t allocations = 0, next = 1, asked = 0, done = 0, stuck = 0;
   bool ended = false;
   GpgpHostAllocator callbacks{};
 
@@ -293,7 +293,8 @@ struct FramesBetween {
   void wait() {
     std::unique_lock lock(mutex);
     if (std::this_thread::get_id() != loader || stuck) return;
-    if (++allocations > 16 && allocations % 37 != 0) return;
+    if (++allocations < next) return;
+    next += 1 + allocations / 8;
     const uint64_t own = ++asked;
     changed.notify_all();
     if (!changed.wait_for(lock, std::chrono::seconds(20), [&] { return done >= own; })) ++stuck; // or it hangs
@@ -311,7 +312,7 @@ TEST(Threads, FramesGoByWithinEachCreation) {
     uint64_t frames = 0;
     GpgpAsset asset = nullptr;
     between.ended = false;
-    between.allocations = 0;
+    between.allocations = 0, between.next = 1;
     std::thread loader([&] {
       {
         const std::lock_guard lock(between.mutex);
@@ -331,10 +332,11 @@ TEST(Threads, FramesGoByWithinEachCreation) {
       beside.next();
       lock.lock();
       ++between.done, ++frames;
+      between.changed.notify_all();
     }
     lock.unlock();
     loader.join();
-    EXPECT_GT(frames, 0u) << "nothing was asked for";
+    EXPECT_GT(frames, 2u) << "hardly anything was asked for";
     ASSERT_EQ(between.stuck, 0u) << "a frame waited for a creation, at allocation " << frames;
     gpgpDestroyAsset(asset);
     gpgpDestroyAsset(first);
