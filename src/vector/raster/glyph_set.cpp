@@ -1,6 +1,7 @@
 #include "vector/raster/glyph_set.h"
 
 #include "vector/patch/patches.h"
+#include "vector/raster/drawing_asset.h"
 #include "vector/raster/segments.h"
 
 #include <algorithm>
@@ -83,7 +84,17 @@ GlyphSet::GlyphSet(core::Context& owner, const char* name)
       cells_(&owner.host()), freeBlocks_(&owner.host()) {}
 
 core::Result<core::Unique<GlyphSet>> GlyphSet::create(core::Context& context, const GpgpGlyphSetCreateInfo& info,
-                                                      const Glyphs* baked) {
+                                                      std::span<const std::byte> bytes) {
+  if (info.methods & GPGP_DRAWING_PATCHES)
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                           "glyph sets have no GPGP_DRAWING_PATCHES: canvases flatten text");
+  if (auto ok = checkMethods(info.methods); !ok) return ok.error();
+  std::optional<Glyphs> baked;
+  if (info.data || info.filePath) {
+    auto loaded = loadBakedGlyphs(bytes, &context.host());
+    if (!loaded) return loaded.error();
+    baked.emplace(std::move(*loaded));
+  }
   const GpgpDrawingMethods methods = info.methods ? info.methods : GPGP_DRAWING_FLATTENED;
   const size_t bakedGlyphs = baked ? baked->entries.size() : 0;
   VkDeviceSize bakedBytes = 0;
@@ -98,11 +109,8 @@ core::Result<core::Unique<GlyphSet>> GlyphSet::create(core::Context& context, co
   }
   const size_t maxGlyphs = info.maxGlyphs ? info.maxGlyphs : baked ? std::max<size_t>(bakedGlyphs, 1) : kDefaultGlyphs;
   const VkDeviceSize maxBytes = info.maxBytes ? info.maxBytes : baked ? bakedBytes : kDefaultBytes;
-  if (maxGlyphs > kMaxGlyphs || maxBytes > context.device.limits.maxStorageBufferRange)
-    return core::makeError(GPGP_ERROR_UNSUPPORTED,
-                           "%zu glyphs of %llu bytes; a set has at most %u, and this device binds at most %u bytes",
-                           maxGlyphs, static_cast<unsigned long long>(maxBytes), kMaxGlyphs,
-                           context.device.limits.maxStorageBufferRange);
+  if (maxGlyphs > kMaxGlyphs)
+    return core::makeError(GPGP_ERROR_UNSUPPORTED, "%zu glyphs; a set has at most %u", maxGlyphs, kMaxGlyphs);
   if (bakedGlyphs > maxGlyphs || bakedBytes > maxBytes / 16 * 16)
     return core::makeError(
         GPGP_ERROR_INVALID_ARGUMENT, "the baked glyphs need maxGlyphs %zu and maxBytes %llu; they are %zu and %llu",
