@@ -4,7 +4,6 @@
 #include "vector/raster/patch_recorder.h"
 
 #include <algorithm>
-#include <optional>
 #include <unordered_set>
 
 using namespace gpgp;
@@ -33,7 +32,7 @@ GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext handle, const GpgpDrawingCrea
     }
     auto made = DrawingAsset::create(**context, *info, base);
     if (!made) return made.error();
-    *drawing = adopt<GpgpAsset>(**context, std::move(*asset));
+    *drawing = adopt<GpgpAsset>(**context, std::move(*made));
     return {};
   });
 }

@@ -15,7 +15,7 @@ core::Result<core::Unique<GeometrySet>> GeometrySet::create(core::Context& conte
     const GpgpMesh& mesh = info.meshes[i];
     if (mesh.indexCount % 3)
       return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "meshes[%u].indexCount is %u; expected a multiple of 3", i,
-                       mesh.indexCount);
+                             mesh.indexCount);
     if (mesh.firstIndex > UINT32_MAX - mesh.indexCount)
       return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "meshes[%u]: firstIndex + indexCount exceeds 32 bits", i);
   }

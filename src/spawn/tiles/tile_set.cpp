@@ -168,8 +168,8 @@ core::Result<void> checkInfo(const GpgpTileInfo& info) {
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "exactly one of hostAxioms and axioms.buffer must be set");
   if (info.axioms.buffer && info.axioms.size / sizeof(GpgpAxiom) < info.axiomCount)
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "axioms.size is %llu bytes, axiomCount %u needs %llu",
-                     static_cast<unsigned long long>(info.axioms.size), info.axiomCount,
-                     static_cast<unsigned long long>(info.axiomCount) * sizeof(GpgpAxiom));
+                           static_cast<unsigned long long>(info.axioms.size), info.axiomCount,
+                           static_cast<unsigned long long>(info.axiomCount) * sizeof(GpgpAxiom));
   return {};
 }
 } // namespace

@@ -143,8 +143,7 @@ Result<void> checkBudgets(const GpgpCanvasCreateInfo& info) {
   if (info.maxLayerPixels > 1u << 28)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxLayerPixels is %u; at most 268435456", info.maxLayerPixels);
   if (info.maxLayerOperations > 65536)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxLayerOperations is %u; at most 65536",
-                     info.maxLayerOperations);
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxLayerOperations is %u; at most 65536", info.maxLayerOperations);
   if (info.method < GPGP_CANVAS_FLATTENED || info.method > GPGP_CANVAS_PATCHES)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "method is %d", info.method);
   if (info.maxTilePatches > 1u << 28)

@@ -55,12 +55,10 @@ core::Result<void> checkMethods(GpgpDrawingMethods methods) {
 core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& context, const GpgpDrawingCreateInfo& info,
                                                               const DrawingAsset* base) {
   if (auto ok = checkMethods(info.methods); !ok) return ok.error();
-  if ((info.editable || info.hitTestable || info.base) && info.methods &&
-      !(info.methods & GPGP_DRAWING_FLATTENED))
+  if ((info.editable || info.hitTestable || info.base) && info.methods && !(info.methods & GPGP_DRAWING_FLATTENED))
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                     "methods has no GPGP_DRAWING_FLATTENED, which edits and hit tests need");
-  if (base && !base->kept())
-    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "base was not made editable");
+                           "methods has no GPGP_DRAWING_FLATTENED, which edits and hit tests need");
+  if (base && !base->kept()) return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "base was not made editable");
   std::pmr::memory_resource* memory = &context.host();
   const std::span edits(info.edits, info.editCount);
   const bool flattened = info.methods == 0 || (info.methods & GPGP_DRAWING_FLATTENED);
@@ -78,15 +76,14 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& con
   auto made = convert();
   if (!made) return made.error();
   const GpgpDrawingMethods held = methodsOf(*made), methods = info.methods ? info.methods : held;
-  if ((held & GPGP_DRAWING_FLATTENED) == 0 &&
-      (methods != GPGP_DRAWING_IN_PASS || info.editable || info.hitTestable))
+  if ((held & GPGP_DRAWING_FLATTENED) == 0 && (methods != GPGP_DRAWING_IN_PASS || info.editable || info.hitTestable))
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                     "the drawing was baked without GPGP_DRAWING_FLATTENED; bake it with both methods");
+                           "the drawing was baked without GPGP_DRAWING_FLATTENED; bake it with both methods");
   if (!made->plan.empty() && (info.editable || info.hitTestable || (methods & GPGP_DRAWING_IN_PASS)))
     return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing has layers: it cannot be %s",
-                     info.editable      ? "editable"
-                     : info.hitTestable ? "hitTestable"
-                                         : "drawn inside a render pass (GPGP_DRAWING_IN_PASS)");
+                           info.editable      ? "editable"
+                           : info.hitTestable ? "hitTestable"
+                                              : "drawn inside a render pass (GPGP_DRAWING_IN_PASS)");
   return make(context, info.label, std::move(*made), info.editable != VK_FALSE, info.hitTestable != VK_FALSE, methods,
               base, edits);
 }
@@ -185,7 +182,7 @@ core::Result<core::Unique<CanvasHistory>> CanvasHistory::create(core::Context& c
   const bool pictured = info.width || info.height || info.maxKept == 0;
   if (pictured && (info.width == 0 || info.height == 0 || info.width > 16384 || info.height > 16384))
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "width x height is %u x %u; expected 1 x 1 to 16384 x 16384",
-                     info.width, info.height);
+                           info.width, info.height);
   if (info.maxKept > 1u << 22)
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxKept is %u; at most 4194304", info.maxKept);
   auto view = core::makeUnique<CanvasHistory>(context.host(), context, info.label);

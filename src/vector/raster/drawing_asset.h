@@ -93,9 +93,9 @@ private:
   /// `base` and `edits`: where the drawing comes from replacePaths, what its other outlines are taken from. `patches`:
   /// those of the file that it comes from; none: they are made where `methods` asks for them.
   static core::Result<core::Unique<DrawingAsset>> make(core::Context& context, const char* label, Drawing&& drawing,
-                                                         bool editable, bool hitTestable, GpgpDrawingMethods methods,
-                                                         const DrawingAsset* base = nullptr,
-                                                         std::span<const GpgpPathEdit> edits = {});
+                                                       bool editable, bool hitTestable, GpgpDrawingMethods methods,
+                                                       const DrawingAsset* base = nullptr,
+                                                       std::span<const GpgpPathEdit> edits = {});
   void setLayers(const Drawing& drawing, const Outlines& outlines);
   LayerPlan plan_;
   LayerBounds layerBounds_;

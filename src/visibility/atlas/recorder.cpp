@@ -29,8 +29,7 @@ Result<void> checkTriangles(uint32_t maxTriangles) {
 } // namespace
 
 Result<core::Unique<Atlas>> Atlas::create(core::Context& context, const GpgpAtlasCreateInfo& info) {
-  if (info.width % shader::kSuperSide || info.height % shader::kSuperSide || info.width > 8192 ||
-      info.height > 8192)
+  if (info.width % shader::kSuperSide || info.height % shader::kSuperSide || info.width > 8192 || info.height > 8192)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "width x height is %u x %u; expected multiples of %u up to 8192",
                      info.width, info.height, shader::kSuperSide);
   if (auto ok = checkTriangles(info.maxTriangles); !ok) return ok.error();
@@ -55,8 +54,7 @@ Result<core::Unique<AtlasRecorder>> AtlasRecorder::create(core::Context& context
                                                           const GpgpAtlasRecorderCreateInfo& info) {
   if (auto ok = checkTriangles(info.maxTriangles); !ok) return ok.error();
   if (info.maxBuckets > shader::kMaxBuckets)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxBuckets is %u; at most %u", info.maxBuckets,
-                     shader::kMaxBuckets);
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxBuckets is %u; at most %u", info.maxBuckets, shader::kMaxBuckets);
   auto recorder = core::makeUnique<AtlasRecorder>(context.host(), context, info);
   if (auto ok = recorder->init(describeAtlasPasses(recorder->budgets_, &context.host())); !ok) return ok.error();
   return recorder;

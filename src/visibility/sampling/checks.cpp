@@ -14,18 +14,17 @@ using core::Result;
 
 Result<void> checkCreateInfo(const GpgpVisibilityRecorderCreateInfo& info) {
   if (info.maxWidth > 8192 || info.maxHeight > 8192)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxWidth x maxHeight is %u x %u; at most 8192 x 8192",
-                     info.maxWidth, info.maxHeight);
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxWidth x maxHeight is %u x %u; at most 8192 x 8192", info.maxWidth,
+                     info.maxHeight);
   if (info.maxCameras > shader::kMaxCameras)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxCameras is %u; at most %u", info.maxCameras,
-                     shader::kMaxCameras);
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxCameras is %u; at most %u", info.maxCameras, shader::kMaxCameras);
   if (info.maxTriangles > 1u << 30)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTriangles is %u; at most 1073741824", info.maxTriangles);
   if (info.maxSamples > 64 || (info.maxSamples & (info.maxSamples - 1)))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxSamples is %u; expected a power of two up to 64",
                      info.maxSamples);
   if (info.methods & ~(GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_REFERENCE_BIT |
-                        GPGP_SAMPLING_CONSERVATIVE_BIT | GPGP_SAMPLING_NEARBY_BIT))
+                       GPGP_SAMPLING_CONSERVATIVE_BIT | GPGP_SAMPLING_NEARBY_BIT))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "methods is 0x%x; it has unknown bits", info.methods);
   return {};
 }
