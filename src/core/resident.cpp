@@ -73,6 +73,7 @@ Result<void> Resident::makeResident(GpgpService service, std::pmr::vector<std::b
   if (auto ok = allocate(service, bytes.empty() ? clearSize : bytes.size(), room); !ok) return ok;
   if (!bytes.empty()) bytes.resize(size_);
   bytes_ = std::move(bytes);
+  reserveRanges(1); // not while the context is locked
   queue(0, size_);
   return {};
 }
