@@ -16,28 +16,31 @@ case ${1:-} in
   ;;
 esac
 
-say "1/4 Debian packages (samples/packages.txt)"
+say "1/5 Debian packages (samples/packages.txt)"
 installMissing samples/packages.txt
 
-say "2/4 a glTF model and a drawing (tests/data/fetch.sh)"
+say "2/5 a glTF model and a drawing (tests/data/fetch.sh)"
 if ! tests/data/fetch.sh --only models svg; then
   note "could not be fetched; the mini-engine uses its own small model and drawing instead"
 fi
 
-say "3/4 build (build/release)"
+say "3/5 build the mini-engine (build/release)"
 configure release -DGPGP_BUILD_TESTS=OFF # these need more packages: tests/run.sh
-cmake --build --preset demo --parallel "$(jobCount)"
+cmake --build --preset release --target mini_engine --parallel "$(jobCount)"
 
-say "4/4 run"
+say "4/5 run"
 pictures=build/release/pictures
 build/release/mini_engine --out "$pictures" "$@"
+for picture in "$pictures"/*.png; do
+  if [[ -f $picture ]]; then note "picture: $PWD/$picture"; fi
+done
+
+say "5/5 build the gpgp command and the other samples"
+cmake --build --preset demo --parallel "$(jobCount)"
 if [[ -n ${DISPLAY:-}${WAYLAND_DISPLAY:-} && $# -eq 0 ]]; then
   note "opening a window; close it or press Escape to end"
   build/release/mini_engine --window || note "no window could be opened; the pictures are there all the same"
 fi
-for picture in "$pictures"/*.png; do
-  if [[ -f $picture ]]; then note "picture: $PWD/$picture"; fi
-done
 
 say "Next"
 note "build/release/mini_engine --help                       what else it shows"

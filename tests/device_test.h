@@ -16,7 +16,8 @@
 namespace gpgp::test {
 
 /// Vulkan as the library sees it where GPGP_TEST_HARDWARE is set: all devices say that they are GPUs, so that software
-/// devices run the passes that they have others for.
+/// devices run the passes that they have others for. GPGP_TEST_HARDWARE=subgroups: whose subgroups are of 32, for those
+/// shaders that count on having some, of whatever size.
 struct AsHardware {
   static inline PFN_vkGetInstanceProcAddr real = nullptr;
   static inline PFN_vkGetPhysicalDeviceProperties2 realProperties = nullptr;
@@ -24,6 +25,12 @@ struct AsHardware {
   static VKAPI_ATTR void VKAPI_CALL properties(VkPhysicalDevice device, VkPhysicalDeviceProperties2* found) {
     realProperties(device, found);
     found->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+    if (std::string_view(std::getenv("GPGP_TEST_HARDWARE")) != "subgroups") return;
+    for (auto* next = static_cast<VkBaseOutStructure*>(found->pNext); next; next = next->pNext)
+      if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_PROPERTIES) {
+        auto* sizes = reinterpret_cast<VkPhysicalDeviceSubgroupSizeControlProperties*>(next);
+        sizes->minSubgroupSize = sizes->maxSubgroupSize = 32;
+      }
   }
   static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL lookUp(VkInstance instance, const char* name) {
     const PFN_vkVoidFunction found = real(instance, name);

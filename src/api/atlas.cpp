@@ -6,29 +6,12 @@ using namespace gpgp;
 using namespace gpgp::api;
 using namespace gpgp::visibility;
 
-namespace {
-Result<void> checkTriangles(uint32_t maxTriangles, const Context& context) {
-  if (maxTriangles > shader::kMaxAtlasTriangles)
-    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTriangles is %u; at most %u", maxTriangles,
-                     shader::kMaxAtlasTriangles);
-  if (Atlas::bytesFor(maxTriangles) > context.device.limits.maxStorageBufferRange)
-    return makeError(GPGP_ERROR_UNSUPPORTED, "maxTriangles is %u, but this device binds at most %u bytes", maxTriangles,
-                     context.device.limits.maxStorageBufferRange);
-  return {};
-}
-} // namespace
-
 GpgpResult GPGP_CALL gpgpCreateAtlas(GpgpContext handle, const GpgpAtlasCreateInfo* info, GpgpHistory* atlas) {
   return guarded("gpgpCreateAtlas", [&](Call& call) -> Result<void> {
     const auto context = resolve(call, handle);
     if (!context) return context.error();
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_ATLAS_CREATE_INFO, "info"); !ok) return ok;
     if (!atlas) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "atlas is NULL");
-    if (info->width % shader::kSuperSide || info->height % shader::kSuperSide || info->width > 8192 ||
-        info->height > 8192)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "width x height is %u x %u; expected multiples of %u up to 8192",
-                       info->width, info->height, shader::kSuperSide);
-    if (auto ok = checkTriangles(info->maxTriangles, **context); !ok) return ok;
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     auto made = Atlas::create(**context, *info);
     if (!made) return made.error();
@@ -44,10 +27,6 @@ GpgpResult GPGP_CALL gpgpCreateAtlasRecorder(GpgpContext handle, const GpgpAtlas
     if (!context) return context.error();
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_ATLAS_RECORDER_CREATE_INFO, "info"); !ok) return ok;
     if (!recorder) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "recorder is NULL");
-    if (auto ok = checkTriangles(info->maxTriangles, **context); !ok) return ok;
-    if (info->maxBuckets > shader::kMaxBuckets)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxBuckets is %u; at most %u", info->maxBuckets,
-                       shader::kMaxBuckets);
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     auto made = AtlasRecorder::create(**context, *info);
     if (!made) return made.error();

@@ -9,8 +9,6 @@ using namespace gpgp::api;
 using spawn::TileSet;
 
 namespace {
-constexpr uint32_t kMostTiles = TileSet::kMostTiles;
-
 struct Parts {
   spawn::Spawner* spawner;
   spawn::Grammar* grammar;
@@ -45,8 +43,6 @@ GpgpResult GPGP_CALL gpgpCreateTileSet(GpgpContext handle, const GpgpTileSetCrea
     if (!tileSet) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "tileSet is NULL");
     const auto parts = partsOf(call, info->spawner, info->grammar, *context);
     if (!parts) return parts.error();
-    if (info->maxTiles < 1 || info->maxTiles > kMostTiles)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTiles is %u; expected 1 to %u", info->maxTiles, kMostTiles);
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     auto made = TileSet::create(**context, *info, *parts->spawner, *parts->grammar);
     if (!made) return made.error();
@@ -65,15 +61,6 @@ GpgpResult GPGP_CALL gpgpRecordTile(GpgpHistory handle, VkCommandBuffer commandB
     if (*tile && !(*set)->find(*tile)) return noTile();
     const auto parts = partsOf(call, (*set)->spawner, (*set)->grammar, &(*set)->context);
     if (!parts) return parts.error();
-    if (info->flags & ~GPGP_TILE_MOVE) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
-    if (!info->capacity) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "capacity is 0");
-    if (!info->axiomCount) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "axiomCount is 0; free the tile instead");
-    if ((info->hostAxioms != nullptr) == (info->axioms.buffer != VK_NULL_HANDLE))
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "exactly one of hostAxioms and axioms.buffer must be set");
-    if (info->axioms.buffer && info->axioms.size / sizeof(GpgpAxiom) < info->axiomCount)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "axioms.size is %llu bytes, axiomCount %u needs %llu",
-                       static_cast<unsigned long long>(info->axioms.size), info->axiomCount,
-                       static_cast<unsigned long long>(info->axiomCount) * sizeof(GpgpAxiom));
     const core::RecorderUse use(*parts->spawner);
     if (!use) return core::RecorderUse::error();
     if (auto ok = checkRecord(*parts->spawner, frame); !ok) return ok;

@@ -21,17 +21,6 @@ GpgpResult GPGP_CALL gpgpCreateGeometrySet(GpgpContext handle, const GpgpGeometr
     if (!geometrySet) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "geometrySet is NULL");
     if (info->meshCount && !info->meshes)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "meshes is NULL, but meshCount is %u", info->meshCount);
-    for (uint32_t i = 0; i < info->meshCount; ++i) {
-      const GpgpMesh& mesh = info->meshes[i];
-      if (mesh.indexCount % 3)
-        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "meshes[%u].indexCount is %u; expected a multiple of 3", i,
-                         mesh.indexCount);
-      if (mesh.firstIndex > UINT32_MAX - mesh.indexCount)
-        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "meshes[%u]: firstIndex + indexCount exceeds 32 bits", i);
-    }
-    if (uint64_t(info->meshCount) * (sizeof(GpgpMesh) + 4) > (*context)->device.limits.maxStorageBufferRange)
-      return makeError(GPGP_ERROR_UNSUPPORTED, "meshCount is %u, but this device binds at most %u bytes",
-                       info->meshCount, (*context)->device.limits.maxStorageBufferRange);
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     auto made = GeometrySet::create(**context, *info);
     if (!made) return made.error();
@@ -43,18 +32,9 @@ GpgpResult GPGP_CALL gpgpCreateGeometrySet(GpgpContext handle, const GpgpGeometr
 GpgpResult GPGP_CALL gpgpOrderTriangles(const float* positions, uint32_t positionStride, uint32_t vertexCount,
                                         const uint32_t* indices, uint32_t indexCount, uint32_t* order) {
   return guarded("gpgpOrderTriangles", [&](Call&) -> Result<void> {
-    if (indexCount % 3)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "indexCount is %u; expected a multiple of 3", indexCount);
     if (indexCount && (!positions || !indices || !order))
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "positions, indices or order is NULL");
-    if (positionStride < 12)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "positionStride is %u; expected 12 or more", positionStride);
-    for (uint32_t i = 0; i < indexCount; ++i)
-      if (indices[i] >= vertexCount)
-        return makeError(GPGP_ERROR_INVALID_ARGUMENT, "indices[%u] is %u; there are %u vertices", i, indices[i],
-                         vertexCount);
-    orderTriangles(positions, positionStride, {indices, indexCount}, {order, indexCount / 3});
-    return {};
+    return orderTriangles(positions, positionStride, vertexCount, {indices, indexCount}, order);
   });
 }
 
@@ -66,20 +46,6 @@ GpgpResult GPGP_CALL gpgpCreateVisibilityRecorder(GpgpContext handle, const Gpgp
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_VISIBILITY_RECORDER_CREATE_INFO, "info"); !ok) return ok;
     if (!recorder) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "recorder is NULL");
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
-    if (info->maxWidth > 8192 || info->maxHeight > 8192)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxWidth x maxHeight is %u x %u; at most 8192 x 8192",
-                       info->maxWidth, info->maxHeight);
-    if (info->maxCameras > shader::kMaxCameras)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxCameras is %u; at most %u", info->maxCameras,
-                       shader::kMaxCameras);
-    if (info->maxTriangles > 1u << 30)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTriangles is %u; at most 1073741824", info->maxTriangles);
-    if (info->maxSamples > 64 || (info->maxSamples & (info->maxSamples - 1)))
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxSamples is %u; expected a power of two up to 64",
-                       info->maxSamples);
-    if (info->methods & ~(GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_REFERENCE_BIT |
-                          GPGP_SAMPLING_CONSERVATIVE_BIT | GPGP_SAMPLING_NEARBY_BIT))
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "methods is 0x%x; it has unknown bits", info->methods);
     auto made = VisibilityRecorder::create(**context, *info);
     if (!made) return made.error();
     *recorder = adopt<GpgpRecorder>(**context, std::move(*made));
@@ -94,12 +60,6 @@ GpgpResult GPGP_CALL gpgpCreateCameraHistory(GpgpContext handle, const GpgpCamer
     if (!context) return context.error();
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_CAMERA_HISTORY_CREATE_INFO, "info"); !ok) return ok;
     if (!history) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "history is NULL");
-    if (info->maxTriangles > 1u << 31)
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTriangles is %u; at most 2147483648", info->maxTriangles);
-    const uint64_t bytes = (uint64_t(info->maxTriangles) + 31) / 32 * 4;
-    if (bytes > (*context)->device.limits.maxStorageBufferRange)
-      return makeError(GPGP_ERROR_UNSUPPORTED, "maxTriangles is %u, but this device binds at most %u bytes",
-                       info->maxTriangles, (*context)->device.limits.maxStorageBufferRange);
     if (auto ok = (*context)->checkAlive(); !ok) return ok;
     auto made = CameraHistory::create(**context, *info);
     if (!made) return made.error();
@@ -112,8 +72,6 @@ GpgpResult GPGP_CALL gpgpGetViewCellCameras(const GpgpViewCellInfo* info, uint32
   return guarded("gpgpGetViewCellCameras", [&](Call&) -> Result<void> {
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_VIEW_CELL_INFO, "info"); !ok) return ok;
     if (!count) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "count is NULL");
-    if (!allFinite(info->camera.viewProjection))
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera.viewProjection holds a number that is not finite");
     const uint32_t room = cameras ? *count : 0;
     const auto made = viewCellCameras(*info, room, cameras);
     if (!made) return made.error();
@@ -128,8 +86,6 @@ GpgpResult GPGP_CALL gpgpGetViewMotionCameras(const GpgpViewMotionInfo* info, ui
   return guarded("gpgpGetViewMotionCameras", [&](Call&) -> Result<void> {
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_VIEW_MOTION_INFO, "info"); !ok) return ok;
     if (!count) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "count is NULL");
-    if (!allFinite(info->camera.viewProjection))
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera.viewProjection holds a number that is not finite");
     const uint32_t room = cameras ? *count : 0;
     const auto made = viewMotionCameras(*info, room, cameras);
     if (!made) return made.error();
@@ -155,15 +111,9 @@ GpgpResult GPGP_CALL gpgpRecordPrepareVisibility(GpgpRecorder handle, VkCommandB
       if (!resolved) return resolved.error();
       history = *resolved;
     }
-    if (!allFinite(info->camera.viewProjection))
-      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera.viewProjection holds a number that is not finite");
     if (info->moreCameraCount && !info->moreCameras)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "moreCameras is NULL, but moreCameraCount is %u",
                        info->moreCameraCount);
-    for (uint32_t i = 0; i < std::min(info->moreCameraCount, shader::kMaxCameras); ++i)
-      if (!allFinite(info->moreCameras[i].viewProjection))
-        return makeError(GPGP_ERROR_INVALID_ARGUMENT,
-                         "moreCameras[%u].viewProjection holds a number that is not finite", i);
     const core::RecorderUse use(**recorder);
     if (!use) return core::RecorderUse::error();
     if (auto ok = checkRecord(**recorder, frame); !ok) return ok;

@@ -50,6 +50,10 @@ void Resident::retire() {
 Result<void> Resident::allocate(GpgpService service, VkDeviceSize size, Room room) {
   size_ = (std::max<VkDeviceSize>(size, 1) + kAlignment - 1) / kAlignment * kAlignment;
   service_ = service;
+  if (size_ > context.device.limits.maxStorageBufferRange)
+    return makeError(GPGP_ERROR_UNSUPPORTED, "the %s needs %llu bytes, but this device binds at most %u",
+                     kindName(kind), static_cast<unsigned long long>(size_),
+                     context.device.limits.maxStorageBufferRange);
   if (room == Room::shared) {
     const auto place = context.assetPool().allocate(service, size_);
     if (!place) return place.error();
@@ -69,6 +73,7 @@ Result<void> Resident::makeResident(GpgpService service, std::pmr::vector<std::b
   if (auto ok = allocate(service, bytes.empty() ? clearSize : bytes.size(), room); !ok) return ok;
   if (!bytes.empty()) bytes.resize(size_);
   bytes_ = std::move(bytes);
+  reserveRanges(1); // not while the context is locked
   queue(0, size_);
   return {};
 }

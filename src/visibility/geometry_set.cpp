@@ -11,6 +11,14 @@ namespace gpgp::visibility {
 
 core::Result<core::Unique<GeometrySet>> GeometrySet::create(core::Context& context,
                                                             const GpgpGeometrySetCreateInfo& info) {
+  for (uint32_t i = 0; i < info.meshCount; ++i) {
+    const GpgpMesh& mesh = info.meshes[i];
+    if (mesh.indexCount % 3)
+      return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "meshes[%u].indexCount is %u; expected a multiple of 3", i,
+                             mesh.indexCount);
+    if (mesh.firstIndex > UINT32_MAX - mesh.indexCount)
+      return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "meshes[%u]: firstIndex + indexCount exceeds 32 bits", i);
+  }
   auto set = core::makeUnique<GeometrySet>(context.host(), context, info.label);
   set->meshCount_ = info.meshCount;
   // The table as the engine wrote it: GpgpMesh is what the shaders read. Behind it each mesh's first cluster. An empty
@@ -33,6 +41,8 @@ core::Result<core::Unique<GeometrySet>> GeometrySet::create(core::Context& conte
 
 core::Result<core::Unique<CameraHistory>> CameraHistory::create(core::Context& context,
                                                                 const GpgpCameraHistoryCreateInfo& info) {
+  if (info.maxTriangles > 1u << 31)
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTriangles is %u; at most 2147483648", info.maxTriangles);
   auto view = core::makeUnique<CameraHistory>(context.host(), context, info.label);
   view->maxTriangles_ = info.maxTriangles ? info.maxTriangles : 1u << 22;
   std::pmr::vector<std::byte> none(&context.host());

@@ -35,8 +35,17 @@ uint32_t curveOf(glm::vec3 place) {
 }
 } // namespace
 
-void orderTriangles(const float* positions, uint32_t stride, std::span<const uint32_t> indices,
-                    std::span<uint32_t> order) {
+core::Result<void> orderTriangles(const float* positions, uint32_t stride, uint32_t vertexCount,
+                                  std::span<const uint32_t> indices, uint32_t* orders) {
+  if (indices.size() % 3)
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "indexCount is %zu; expected a multiple of 3", indices.size());
+  if (stride < 12)
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "positionStride is %u; expected 12 or more", stride);
+  for (size_t i = 0; i < indices.size(); ++i)
+    if (indices[i] >= vertexCount)
+      return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "indices[%zu] is %u; there are %u vertices", i, indices[i],
+                             vertexCount);
+  const std::span order(orders, indices.size() / 3);
   const auto corner = [&](size_t i) {
     float p[3];
     std::memcpy(p, reinterpret_cast<const char*>(positions) + size_t(indices[i]) * stride, sizeof p);
@@ -58,6 +67,7 @@ void orderTriangles(const float* positions, uint32_t stride, std::span<const uin
   }
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return keys[a] < keys[b]; });
+  return {};
 }
 
 } // namespace gpgp::visibility

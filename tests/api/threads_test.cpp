@@ -2,10 +2,18 @@
 // tests/sanitizers/tsan.sh runs this with ThreadSanitizer.
 #include "scenarios.h"
 
+#ifdef GPGP_WITH_VECTOR
+#include "vector/patch/glyphs.h"
+#endif
+
 #include <gpgp/gpgp.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdlib>
+#include <mutex>
 #include <thread>
 
 namespace {
@@ -31,6 +39,21 @@ GpgpResult createGlyphSet(GpgpContext context, uint32_t number, GpgpAsset* asset
   GpgpGlyphSetCreateInfo info = GPGP_GLYPH_SET_CREATE_INFO_INIT;
   info.maxGlyphs = 8 + number;
   info.maxBytes = 4096;
+  return gpgpCreateGlyphSet(context, &info, asset);
+}
+/// 200 glyphs, as a file has them.
+GpgpResult createBakedGlyphSet(GpgpContext context, uint32_t, GpgpAsset* asset) {
+  static const auto kBytes = [] {
+    const GpgpPath path = trianglePath();
+    std::vector<GpgpGlyph> glyphs(200, GpgpGlyph{0, &path, 1});
+    for (size_t i = 0; i < glyphs.size(); ++i) glyphs[i].key = i;
+    std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+    return vector::bakeGlyphs(*vector::makeGlyphs(glyphs, memory, nullptr), memory);
+  }();
+  GpgpGlyphSetCreateInfo info = GPGP_GLYPH_SET_CREATE_INFO_INIT;
+  info.data = kBytes.data();
+  info.size = kBytes.size();
+  info.methods = GPGP_DRAWING_FLATTENED | GPGP_DRAWING_IN_PASS;
   return gpgpCreateGlyphSet(context, &info, asset);
 }
 #if defined(GPGP_WITH_COMPILER)
@@ -89,7 +112,7 @@ GpgpResult createGeometrySet(GpgpContext context, uint32_t number, GpgpAsset* as
 using Create = GpgpResult (*)(GpgpContext, uint32_t, GpgpAsset*);
 constexpr Create kCreates[] = {
 #if defined(GPGP_WITH_VECTOR)
-    createDrawing,     createGlyphSet,
+    createDrawing,     createGlyphSet, createBakedGlyphSet,
 #if defined(GPGP_WITH_COMPILER)
     createLottieFrame,
 #endif
@@ -108,8 +131,9 @@ struct Frames {
   GpgpContext context = nullptr;
   GpgpFrame frame{1, 0};
 
-  Frames() {
-    const GpgpContextCreateInfo info = device.contextCreateInfo();
+  explicit Frames(const GpgpHostAllocator* host = nullptr) {
+    GpgpContextCreateInfo info = device.contextCreateInfo();
+    info.hostAllocator = host;
     EXPECT_EQ(gpgpCreateContext(&info, &context), GPGP_SUCCESS);
   }
   ~Frames() {
@@ -246,6 +270,79 @@ TEST(Threads, FramesAreRecordedBesideLoaders) {
     for (const GpgpAsset asset : made) gpgpDestroyAsset(asset);
   EXPECT_EQ(frame(), wanted);
   for (const auto& scenario : scenarios) scenario->destroy();
+}
+
+/// Host memory that a loading thread only gets when a whole frame has gone by: the first times, and then after each
+/// eighth more allocations.
+struct FramesBetween {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::thread::id loader;
+  uint64_t allocations = 0, next = 1, asked = 0, done = 0, stuck = 0;
+  bool ended = false;
+  GpgpHostAllocator callbacks{};
+
+  FramesBetween() {
+    callbacks.userData = this;
+    callbacks.allocate = [](void* user, size_t size, size_t alignment) -> void* {
+      static_cast<FramesBetween*>(user)->wait();
+      return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+    };
+    callbacks.free = [](void*, void* memory, size_t, size_t) { std::free(memory); };
+  }
+  void wait() {
+    std::unique_lock lock(mutex);
+    if (std::this_thread::get_id() != loader || stuck) return;
+    if (++allocations < next) return;
+    next += 1 + allocations / 8;
+    const uint64_t own = ++asked;
+    changed.notify_all();
+    if (!changed.wait_for(lock, std::chrono::seconds(20), [&] { return done >= own; })) ++stuck; // or it hangs
+  }
+};
+
+// While assets are validated and converted, whole frames go by on the frames' thread: wherever a creation asks for
+// memory, it holds nothing that a frame waits for.
+TEST(Threads, FramesGoByWithinEachCreation) {
+  FramesBetween between;
+  Frames beside(&between.callbacks);
+  GpgpAsset first = nullptr; // the first asset makes room for others' handles, and buffers
+  for (const Create create : kCreates) {
+    ASSERT_EQ(create(beside.context, 0, &first), GPGP_SUCCESS);
+    uint64_t frames = 0;
+    GpgpAsset asset = nullptr;
+    between.ended = false;
+    between.allocations = 0, between.next = 1;
+    std::thread loader([&] {
+      {
+        const std::lock_guard lock(between.mutex);
+        between.loader = std::this_thread::get_id();
+      }
+      EXPECT_EQ(create(beside.context, 1, &asset), GPGP_SUCCESS);
+      const std::lock_guard lock(between.mutex);
+      between.loader = {};
+      between.ended = true;
+      between.changed.notify_all();
+    });
+    std::unique_lock lock(between.mutex);
+    while (!between.ended) {
+      between.changed.wait(lock, [&] { return between.ended || between.asked > between.done; });
+      if (between.asked == between.done) continue;
+      lock.unlock();
+      beside.next();
+      lock.lock();
+      ++between.done, ++frames;
+      between.changed.notify_all();
+    }
+    lock.unlock();
+    loader.join();
+    EXPECT_GT(frames, 2u) << "hardly anything was asked for";
+    ASSERT_EQ(between.stuck, 0u) << "a frame waited for a creation, at allocation " << frames;
+    gpgpDestroyAsset(asset);
+    gpgpDestroyAsset(first);
+    beside.next();
+    beside.next();
+  }
 }
 
 // What the frames' thread frees does not wait for memory that a loading thread asks the engine for.

@@ -61,12 +61,18 @@ size_t kernelCount(const std::string& file) {
 TEST(CliTune, FindsAScheduleAndBakesIt) {
   const TemporaryFile grammar("tune.pga", kTower), baked("tune.gpgpg");
   const std::vector<std::string> arguments = {
-      "tune", grammar.path(),     "--axioms",     "3",     "--samples", "5",         "--repeat",
-      "3",    "--schedules-only", "--axiom-size", "8,4,1", "-o",        baked.path()};
+      "tune",         grammar.path(), "--axioms",  "3", "--samples", "5",         "--repeat", "3", "--schedules-only",
+      "--axiom-size", "8,4,1",        "--seconds", "0", "-o",        baked.path()};
   const json first = gpgpJson(arguments);
   EXPECT_EQ(first["terminals"], 3 * 4 * 3); // 8 becomes 2 and a wall, 2 becomes 0.5 and a wall, 0.5 is a roof
   EXPECT_GE(first["schedules"].size(), 2u);
   EXPECT_EQ(first["candidates"], first["schedules"].size());
+  double before = 0; // the fastest comes first: it is the one that is kept
+  for (const json& schedule : first["schedules"]) {
+    const json& time = schedule["gpu_ms_median"]; // none where budgets do not suffice
+    EXPECT_LE(before, time.is_null() ? std::numeric_limits<double>::infinity() : time.get<double>()) << first.dump(2);
+    before = time.is_null() ? std::numeric_limits<double>::infinity() : time.get<double>();
+  }
   EXPECT_GT(first["best"]["gpu_ms_median"], 0);
   const size_t kernels = kernelCount(baked.path());
   EXPECT_GE(kernels, 1u);

@@ -226,7 +226,7 @@ TEST(CliVisibilityViews, CellsSeeRoundWhatHides) {
 bool isGreen(int r, int g, int b) { return g > 2 * r && g > 2 * b; }
 bool isBlue(int r, int g, int b) { return b > 2 * r && b > 2 * g; }
 bool isRed(int r, int g, int b) { return r > 2 * g && r > 2 * b; }
-bool isGrey(int r, int g, int b) { return r == g && g == b && r < 230; }
+bool isGrey(int r, int g, int b) { return r == g && g == b && r < 160; } // lit, it is 153 at most
 bool isBackground(int r, int g, int b) { return r > 240 && g > 240 && b > 240; }
 
 /// A sheet, and before it, between the centres of two columns of pixels, a strip 0.8 of a pixel wide and 20 high.
@@ -265,6 +265,8 @@ TEST(CliVisibilityViews, MethodsAndOverlay) {
   EXPECT_EQ(figures["overestimation"], 0.0);
   EXPECT_EQ(count(added, isGreen), kAll - kStrip);
   EXPECT_EQ(count(added, isGrey), kStrip) << "the method's alone";
+  // Both face the same light: 0.75 of it is green, 0.6 grey.
+  EXPECT_NEAR(added.rgba[(48 * 96 + 51) * 4 + 1], 0.8 * added.rgba[1], 1);
 
   // One sample a pixel does not find the strip, 64 x 64 do: without them it is too much, with them it is not.
   const host::Picture tooMuch = overlay({"--method", "exact", "--reference", "1", "--recheck", "0"}, figures);

@@ -1,6 +1,6 @@
 // A workgroup of 32 invocations that decide a list together, and what they say to each other: by subgroups where those
 // are of 32 on the device, so that it is one.
-layout(local_size_x = 32) in; // kBatch
+layout(local_size_x = kBatch) in;
 
 uint laneOf() { return gl_LocalInvocationIndex; }
 

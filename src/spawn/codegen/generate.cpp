@@ -1,5 +1,6 @@
 #include "spawn/codegen/generate.h"
 
+#include "spawn/codegen/code_text.h"
 #include "spawn/codegen/queues.h"
 #include "spawn/codegen/room.h"
 #include "spawn/codegen/table.h"
@@ -9,25 +10,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
 namespace gpgp::spawn {
 namespace {
 using namespace shader;
-
-/// A float whose bits survive.
-std::string literal(float value) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.9gf", static_cast<double>(value));
-  std::string result = text;
-  if (result.find_first_of(".en") == std::string::npos) result.insert(result.size() - 1, ".0");
-  if (value < 0) result = "(" + result + ")";
-  return result;
-}
-std::string number(uint32_t value) { return std::to_string(value) + "u"; }
 
 class Generator {
 public:
@@ -157,36 +145,6 @@ private:
 
   // ---------------------------------------------------------------- parameters
 
-  static std::string attribute(uint32_t code) {
-    if (code == kCodeSeed) return "unitFloat(s.seed)";
-    const Attribute& attribute = attributeAt(code);
-    const uint32_t place = code - attribute.code;
-    std::string member = attribute.member;
-    if (code >= kCodeView) return "seenOf(s)." + member;
-    if (attribute.axes == 2) member.back() = "XYZ"[place / 3]; // of axisX
-    return "s." + member + (attribute.axes ? std::string(".") + "xyz"[place % 3] : std::string());
-  }
-  /// A table's code with other words in it: textOf(word) for each, in their order.
-  template <class Text> static std::string replaced(std::string_view code, const Text& textOf) {
-    const auto isWord = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
-    std::string text;
-    for (size_t at = 0; at < code.size();) {
-      size_t end = at;
-      while (end < code.size() && isWord(code[end])) ++end;
-      text += end > at ? textOf(code.substr(at, end - at)) : std::string(1, code[at]);
-      at = std::max(end, at + 1);
-    }
-    return text;
-  }
-  /// draw: the number of what kCodeRandom draws.
-  static std::string operation(uint32_t code, const std::string& a, const std::string& b, uint32_t draw) {
-    return replaced(binaryOf(code).text, [&](std::string_view word) {
-      return word == "a"       ? a
-             : word == "b"     ? b
-             : word == "drawn" ? "drawnNumber(s.key, " + number(draw) + ")"
-                               : std::string(word);
-    });
-  }
   const Parameter& parameterOf(const Node& node, uint32_t index) const {
     return graph_.parameters[node.firstParameter + index];
   }
@@ -230,7 +188,6 @@ private:
   std::string vector(const Node& node) {
     return "vec3(" + parameter(node, 0) + ", " + parameter(node, 1) + ", " + parameter(node, 2) + ")";
   }
-  static std::string component(uint32_t axis) { return std::string("s.size.") + "xyz"[axis]; }
   std::string array(const Node& node) { // of RandomRule's probabilities
     std::string text = "float[" + std::to_string(node.edgeCount) + "](";
     for (uint32_t i = 0; i < node.edgeCount; ++i)

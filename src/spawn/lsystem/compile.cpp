@@ -1,10 +1,10 @@
-// Resolves the names of a file, and writes its table.
+// Resolves the names of a file, and collects what its table holds.
 #include "spawn/lsystem/compile.h"
 
 #include "core/suggest.h"
 #include "spawn/lsystem/rewrite.h"
 #include "spawn/lsystem/syntax.h"
-#include "spawn/lsystem/table.h"
+#include "spawn/lsystem/table_writer.h"
 
 #include <gpgp/spawn.h>
 
@@ -65,15 +65,6 @@ struct Scope {
   std::map<std::string, Meaning> names;
 };
 
-struct Symbol {
-  std::string name;
-  uint32_t arity, turtle = kTurtleNone, terminal = kNoTerminal;
-  bool ignored = false;
-  bool made = false; ///< by an axiom or a successor
-  std::array<std::vector<std::array<uint32_t, kProductionSize>>, kPhases3> productions;
-  std::array<std::vector<const Production*>, kPhases3> sources;
-};
-
 class Compiler {
 public:
   Compiler(const File& file, std::span<const Override> overrides, Diagnostics& diagnostics)
@@ -88,8 +79,8 @@ public:
     intern("[", 0, {});
     intern("]", 0, {});
     intern("@axiom", 1, {});
-    symbols_[kSymbolAxiom].turtle = kTurtleAxiom;
-    std::array<uint32_t, kProductionSize> axiom{};
+    table_.symbols[kSymbolAxiom].turtle = kTurtleAxiom;
+    std::array<uint32_t, kProductionSize>& axiom = table_.axiom;
     axiom[kProductionPredecessor] = kSymbolAxiom;
     if (file_.systems[0].axiom) {
       draws_ = 0;
@@ -103,7 +94,7 @@ public:
     takeSettings();
     warn();
     if (diagnostics_.hasErrors()) return std::nullopt;
-    return write(axiom);
+    return wordsOf(table_);
   }
 
 private:
@@ -183,17 +174,17 @@ private:
     bool has[kPhases3] = {};
     for (const System& system : file_.systems)
       for (const Production& p : system.productions) has[p.phase] = true;
-    head_.resize(kLsysHeadSize);
+    table_.head.resize(kLsysHeadSize);
     if (!s.iterations && has[kPhaseMain] &&
         std::none_of(overrides_.begin(), overrides_.end(), [](const Override& o) { return o.name == "iterations"; }))
       diagnostics_.warning({}, "there is no 'iterations:'; without it, no production is applied");
-    head_[kLsysHeadIterations] = wholeSetting("iterations", s.iterations, 0, kMostIterations);
-    head_[kLsysHeadDecompositions] =
+    table_.head[kLsysHeadIterations] = wholeSetting("iterations", s.iterations, 0, kMostIterations);
+    table_.head[kLsysHeadDecompositions] =
         has[kPhaseDecomposition] ? wholeSetting("decomposition", s.decompositions, 1, kMostRepeats) : 0;
-    head_[kLsysHeadHomomorphisms] =
+    table_.head[kLsysHeadHomomorphisms] =
         has[kPhaseHomomorphism] ? wholeSetting("homomorphism", s.homomorphisms, 1, kMostRepeats) : 0;
-    head_[kLsysHeadSeed] = wholeSetting("seed", s.seed, 0, 1u << 24);
-    const auto put = [&](uint32_t word, float value) { head_[word] = std::bit_cast<uint32_t>(settle(value)); };
+    table_.head[kLsysHeadSeed] = wholeSetting("seed", s.seed, 0, 1u << 24);
+    const auto put = [&](uint32_t word, float value) { table_.head[word] = std::bit_cast<uint32_t>(settle(value)); };
     put(kLsysHeadAngle, setting("angle", s.angle, 90));
     const float step = setting("step", s.step, 1);
     put(kLsysHeadStep, step);
@@ -214,16 +205,16 @@ private:
       for (uint32_t i = 0; i < 3; ++i) put(kLsysHeadTropism + i, direction[i] / length);
     }
     put(kLsysHeadTropism + 3, direction[3]);
-    head_[kLsysHeadSegment] = file_.segmentShape;
+    table_.head[kLsysHeadSegment] = file_.segmentShape;
     uint32_t flags = hasContexts_ ? kLsysContexts : 0;
     if (direction[3] != 0) flags |= kLsysWalks;
-    for (const Symbol& symbol : symbols_) {
+    for (const Symbol& symbol : table_.symbols) {
       if (symbol.turtle == kTurtleCut) flags |= kLsysCuts;
       if (symbol.turtle >= kTurtleUpright) flags |= kLsysWalks;
       if (symbol.turtle == kTurtlePolygon) flags |= kLsysPolygons;
       if (symbol.turtle == kTurtleCylinder) flags |= kLsysCylinders;
     }
-    head_[kLsysHeadFlags] = flags;
+    table_.head[kLsysHeadFlags] = flags;
   }
 
   // ------------------------------------------------------------ symbols
@@ -236,14 +227,15 @@ private:
   }
 
   uint32_t terminal(const std::string& name, uint32_t kind, uint32_t shape) {
-    for (uint32_t i = 0; i < terminals_.size(); ++i)
-      if (terminals_[i].name == name && terminals_[i].kind == kind && terminals_[i].shape == shape) return i;
-    if (terminals_.size() == kMostTerminals) {
+    for (uint32_t i = 0; i < table_.terminals.size(); ++i)
+      if (table_.terminals[i].name == name && table_.terminals[i].kind == kind && table_.terminals[i].shape == shape)
+        return i;
+    if (table_.terminals.size() == kMostTerminals) {
       diagnostics_.error({}, "the system draws more than " + std::to_string(kMostTerminals) + " different things");
       return 0;
     }
-    terminals_.push_back({name, kind, shape});
-    return static_cast<uint32_t>(terminals_.size() - 1);
+    table_.terminals.push_back({name, kind, shape});
+    return static_cast<uint32_t>(table_.terminals.size() - 1);
   }
 
   /// system: that the name is read in; symbols that a sub-system rewrites are its own.
@@ -257,11 +249,11 @@ private:
                                     std::to_string(kMostArity));
       return kSymbolOpen;
     }
-    if (arity && symbols_.size() > kSymbolClose && (name == "[" || name == "]")) {
+    if (arity && table_.symbols.size() > kSymbolClose && (name == "[" || name == "]")) {
       diagnostics_.error(place, "a bracket has no parameters");
       return kSymbolOpen;
     }
-    if (symbols_.size() == kMostSymbols) {
+    if (table_.symbols.size() == kMostSymbols) {
       diagnostics_.error(place, "there are too many symbols");
       return kSymbolOpen;
     }
@@ -291,8 +283,8 @@ private:
       return std::find(list.begin(), list.end(), name) != list.end();
     };
     symbol.ignored = file_.considers ? !contains(file_.considered) : contains(file_.ignored);
-    symbols_.push_back(std::move(symbol));
-    return symbolIndex_[key] = static_cast<uint32_t>(symbols_.size() - 1);
+    table_.symbols.push_back(std::move(symbol));
+    return symbolIndex_[key] = static_cast<uint32_t>(table_.symbols.size() - 1);
   }
 
   // ------------------------------------------------------------ programs
@@ -333,10 +325,10 @@ private:
     uint32_t most = 0;
     emit(e, scope, program, 0, most);
     program.push_back(kLsysEnd);
-    if (program.size() > kMostProgram || most > kMostStackDepth || code_.size() + program.size() > kMostCode)
+    if (program.size() > kMostProgram || most > kMostStackDepth || table_.code.size() + program.size() > kMostCode)
       diagnostics_.error(e.place, "the expression is too long or nests too deep");
-    const uint32_t at = static_cast<uint32_t>(code_.size());
-    if (program.size() <= kMostProgram) code_.insert(code_.end(), program.begin(), program.end());
+    const uint32_t at = static_cast<uint32_t>(table_.code.size());
+    if (program.size() <= kMostProgram) table_.code.insert(table_.code.end(), program.begin(), program.end());
     return at + 1;
   }
 
@@ -351,7 +343,7 @@ private:
   void append(const System& system, const ModuleString& string, const Scope& scope, uint32_t nesting,
               std::array<uint32_t, kProductionSize>& production) {
     for (const Module& m : string) {
-      if (modules_.size() > (1u << 22)) return;
+      if (table_.modules.size() > (1u << 22)) return;
       if (m.name[0] == '?') {
         const std::string name = m.name.substr(1);
         const System* called = systemNamed(name);
@@ -373,13 +365,13 @@ private:
         continue;
       }
       const uint32_t symbol = intern(m.name, m.arguments.size(), system.name, m.place);
-      symbols_[symbol].made = true;
+      table_.symbols[symbol].made = true;
       uint32_t code = 0;
       for (const Expression& argument : m.arguments) {
         const uint32_t at = programOf(argument, scope);
         if (!code) code = at;
       }
-      modules_.push_back({symbol, code});
+      table_.modules.push_back({symbol, code});
       production[kProductionSuccessor + 1] += 1;
       production[kProductionParameters] += static_cast<uint32_t>(m.arguments.size());
     }
@@ -400,7 +392,7 @@ private:
     const Place end = string.empty() ? Place{} : string.back().place;
     if (depth) diagnostics_.error(end, "a '[' of this string has no ']'; strings are put together whole");
     if (polygons) diagnostics_.error(end, "a '{' of this string has no '}'; strings are put together whole");
-    production[kProductionSuccessor] = static_cast<uint32_t>(modules_.size());
+    production[kProductionSuccessor] = static_cast<uint32_t>(table_.modules.size());
     append(system, string, scope, 0, production);
     if (production[kProductionSuccessor + 1] > kMostSuccessor)
       diagnostics_.error(string.empty() ? Place{} : string[0].place,
@@ -422,7 +414,7 @@ private:
     if (context.empty()) return;
     const uint32_t side = left ? kProductionLeft : kProductionRight;
     hasContexts_ = true;
-    production[side] = static_cast<uint32_t>(contexts_.size());
+    production[side] = static_cast<uint32_t>(table_.contexts.size());
     production[side + 1] = static_cast<uint32_t>(context.size());
     int depth = 0;
     if (context.size() > kMostContext)
@@ -436,14 +428,14 @@ private:
           diagnostics_.error(m.place, "']' without a '[' before it in this context");
           depth = 0;
         }
-        contexts_.push_back({m.name == "[" ? kContextOpen : kContextClose, 0});
+        table_.contexts.push_back({m.name == "[" ? kContextOpen : kContextClose, 0});
         continue;
       }
       if (m.name[0] == '?') diagnostics_.error(m.place, "a context cannot hold a sub-system");
       const uint32_t symbol = intern(m.name, m.arguments.size(), system.name, m.place);
-      if (symbols_[symbol].ignored)
+      if (table_.symbols[symbol].ignored)
         diagnostics_.error(m.place, "contexts do not see '" + m.name + "', so this one never holds");
-      contexts_.push_back({symbol, variables});
+      table_.contexts.push_back({symbol, variables});
       declare(m, scope, variables);
       contextSymbols_.push_back({symbol, m.place});
     }
@@ -469,8 +461,8 @@ private:
     if (variables > kMostVariables)
       diagnostics_.error(p.place, "a production has at most " + std::to_string(kMostVariables) + " parameters; found " +
                                       std::to_string(variables));
-    auto& productions = symbols_[symbol].productions[p.phase];
-    if (productions.size() == kMostAlternatives || ++productionCount_ > kMostProductions)
+    auto& productions = table_.symbols[symbol].productions[p.phase];
+    if (productions.size() == kMostAlternatives || ++table_.productionCount > kMostProductions)
       return diagnostics_.error(p.place, "'" + name + "' has too many productions");
     drawBase_ = static_cast<uint32_t>(productions.size()) << 16;
     draws_ = 0;
@@ -478,8 +470,8 @@ private:
     if (p.probability) production[kProductionProbability] = programOf(*p.probability, scope);
     takeString(system, p.successor, scope, production);
     drawBase_ = 0;
-    symbols_[symbol].productions[p.phase].push_back(production); // takeString may have moved it
-    symbols_[symbol].sources[p.phase].push_back(&p);
+    table_.symbols[symbol].productions[p.phase].push_back(production); // takeString may have moved it
+    table_.symbols[symbol].sources[p.phase].push_back(&p);
   }
 
   // ------------------------------------------------------------ remarks
@@ -489,16 +481,16 @@ private:
       return n == 0 ? "no parameter" : n == 1 ? "1 parameter" : std::to_string(n) + " parameters";
     };
     std::set<std::string> made;
-    for (const Symbol& symbol : symbols_)
+    for (const Symbol& symbol : table_.symbols)
       if (symbol.made) made.insert(symbol.name);
-    for (const Symbol& symbol : symbols_) {
+    for (const Symbol& symbol : table_.symbols) {
       for (uint32_t phase = 0; phase < kPhases3; ++phase) {
         const auto& sources = symbol.sources[phase];
         if (sources.empty()) continue;
         if (!symbol.made) {
           std::string text = "the production never applies: no axiom or successor holds '" + symbol.name + "' with " +
                              parameters(symbol.arity);
-          for (const Symbol& other : symbols_)
+          for (const Symbol& other : table_.symbols)
             if (other.made && other.name == symbol.name)
               text += "; one has it with " + std::string(parameters(other.arity));
           if (!made.contains(symbol.name)) {
@@ -533,98 +525,26 @@ private:
       }
     }
     for (const auto& [symbol, place] : contextSymbols_)
-      if (!symbols_[symbol].made)
-        diagnostics_.warning(place, "the context never holds: no axiom or successor holds '" + symbols_[symbol].name +
-                                        "' with " + parameters(symbols_[symbol].arity));
+      if (!table_.symbols[symbol].made)
+        diagnostics_.warning(place, "the context never holds: no axiom or successor holds '" +
+                                        table_.symbols[symbol].name + "' with " +
+                                        parameters(table_.symbols[symbol].arity));
     for (const std::string& name : file_.ignored)
       if (!made.contains(name) && turtleOf(name) == kTurtleNone)
         diagnostics_.info({}, "'ignore:' names '" + name + "', which no axiom or successor holds");
   }
 
-  // ------------------------------------------------------------ the table
-
-  std::vector<uint32_t> write(const std::array<uint32_t, kProductionSize>& axiom) {
-    std::string names(1, '\0');
-    const auto nameAt = [&](const std::string& name) {
-      const uint32_t at = static_cast<uint32_t>(names.size());
-      names += name;
-      names += '\0';
-      return at;
-    };
-    const uint32_t counts[kLsysSections - 1] = {
-        static_cast<uint32_t>(symbols_.size()),   productionCount_ + 1,
-        static_cast<uint32_t>(contexts_.size()),  static_cast<uint32_t>(modules_.size()),
-        static_cast<uint32_t>(terminals_.size()), static_cast<uint32_t>(code_.size())};
-    const uint32_t sizes[kLsysSections - 1] = {kSymbolSize, kProductionSize, kContextSize,
-                                               kModuleSize, kTerminalWords,  1};
-    uint32_t offsets[kLsysSections];
-    uint32_t offset = kLsysHeadSize;
-    for (uint32_t s = 0; s < kLsysSections - 1; ++s) {
-      offsets[s] = offset;
-      head_[kLsysHeadSections + 2 * s] = counts[s];
-      head_[kLsysHeadSections + 2 * s + 1] = offset;
-      offset += counts[s] * sizes[s];
-    }
-    offsets[kLsysSectionNames] = offset;
-    std::vector<uint32_t> words(head_.begin(), head_.end());
-    std::vector<uint32_t> productions;
-    const auto program = [&](uint32_t from1) { return from1 ? offsets[kLsysSectionCode] + from1 - 1 : 0; };
-    const auto add = [&](std::array<uint32_t, kProductionSize> p) {
-      p[kProductionLeft] = offsets[kLsysSectionContexts] + p[kProductionLeft] * kContextSize;
-      p[kProductionRight] = offsets[kLsysSectionContexts] + p[kProductionRight] * kContextSize;
-      p[kProductionCondition] = program(p[kProductionCondition]);
-      p[kProductionProbability] = program(p[kProductionProbability]);
-      p[kProductionSuccessor] = offsets[kLsysSectionModules] + p[kProductionSuccessor] * kModuleSize;
-      productions.insert(productions.end(), p.begin(), p.end());
-    };
-    words[kLsysHeadAxiom] = offsets[kLsysSectionProductions];
-    add(axiom);
-    for (const Symbol& s : symbols_) {
-      words.insert(words.end(), {nameAt(s.name), s.arity, s.turtle, s.terminal, s.ignored ? kSymbolIgnored : 0u});
-      for (uint32_t phase = 0; phase < kPhases3; ++phase) {
-        words.push_back(offsets[kLsysSectionProductions] + static_cast<uint32_t>(productions.size()));
-        words.push_back(static_cast<uint32_t>(s.productions[phase].size()));
-        for (const auto& p : s.productions[phase]) add(p);
-      }
-    }
-    words.insert(words.end(), productions.begin(), productions.end());
-    for (const auto& c : contexts_) words.insert(words.end(), c.begin(), c.end());
-    for (const auto& [symbol, code] : modules_) words.insert(words.end(), {symbol, program(code)});
-    for (const TerminalLine& t : terminals_) words.insert(words.end(), {nameAt(t.name), t.kind, t.shape});
-    words.insert(words.end(), code_.begin(), code_.end());
-    names.resize((names.size() + 3) / 4 * 4, '\0');
-    words[kLsysHeadSections + 2 * kLsysSectionNames] = static_cast<uint32_t>(names.size() / 4);
-    words[kLsysHeadSections + 2 * kLsysSectionNames + 1] = offset;
-    for (size_t i = 0; i < names.size(); i += 4) {
-      uint32_t word;
-      std::memcpy(&word, names.data() + i, 4);
-      words.push_back(word);
-    }
-    words[kLsysHeadMagic] = kLsysMagic;
-    words[kLsysHeadVersion] = kLsysVersion;
-    words[kLsysHeadWords] = static_cast<uint32_t>(words.size());
-    words[kLsysHeadChecksum] = checksumOf(std::span<const uint32_t>(words).subspan(kLsysHeadIterations));
-    return words;
-  }
-
-  struct TerminalLine {
-    std::string name;
-    uint32_t kind, shape;
-  };
   const File& file_;
   std::span<const Override> overrides_;
   Diagnostics& diagnostics_;
+  TableContents table_;
   std::map<std::string, float> constants_;
   std::map<std::string, std::set<std::string>> predecessors_; // by system
   std::set<std::string> rewritten_;                           // of all
   std::map<std::string, const Asset*> assets_;
-  std::vector<Symbol> symbols_;
   std::map<std::pair<std::string, size_t>, uint32_t> symbolIndex_;
-  std::vector<TerminalLine> terminals_;
-  std::vector<std::array<uint32_t, 2>> contexts_, modules_;
   std::vector<std::pair<uint32_t, Place>> contextSymbols_;
-  std::vector<uint32_t> code_, head_;
-  uint32_t productionCount_ = 0, drawBase_ = 0, draws_ = 0;
+  uint32_t drawBase_ = 0, draws_ = 0;
   bool hasContexts_ = false;
 };
 

@@ -2,6 +2,7 @@
 
 #include "core/turns.h"
 #include "spawn/schedule/camera.h"
+#include "spawn/schedule/checks.h"
 #include "spawn/schedule/fits.h"
 #include "spawn/schedule/measuring.h"
 #include "spawn/shared/layout.h"
@@ -59,6 +60,7 @@ template <class Element> uint32_t elementsIn(const GpgpBuffer& buffer) {
 } // namespace
 
 core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, const GpgpSpawnerCreateInfo& info) {
+  if (auto ok = checkCreateInfo(info); !ok) return ok.error();
   VertexLayout layout;
   if (info.vertices) {
     auto checked = layoutOf(*info.vertices);

@@ -87,6 +87,8 @@ VkDeviceSize TileSet::strideOf(const Spawner& spawner, const Grammar& grammar) {
 
 core::Result<core::Unique<TileSet>> TileSet::create(core::Context& context, const GpgpTileSetCreateInfo& info,
                                                     const Spawner& spawner, const Grammar& grammar) {
+  if (info.maxTiles < 1 || info.maxTiles > kMostTiles)
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTiles is %u; expected 1 to %u", info.maxTiles, kMostTiles);
   const auto invalid = [](const char* what) { return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s", what); };
   const VkDeviceSize alignment = alignmentOf(context.device), stride = strideOf(spawner, grammar);
   const bool vertices = spawner.vertices();
@@ -157,8 +159,24 @@ void TileSet::fill(VkCommandBuffer commandBuffer, uint32_t slot, uint32_t word, 
                                     draws_.offset + stride_ * slot + kCommandBytes * draw + 4 * word, 4, value);
 }
 
+namespace {
+core::Result<void> checkInfo(const GpgpTileInfo& info) {
+  if (info.flags & ~GPGP_TILE_MOVE) return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
+  if (!info.capacity) return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "capacity is 0");
+  if (!info.axiomCount) return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "axiomCount is 0; free the tile instead");
+  if ((info.hostAxioms != nullptr) == (info.axioms.buffer != VK_NULL_HANDLE))
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "exactly one of hostAxioms and axioms.buffer must be set");
+  if (info.axioms.buffer && info.axioms.size / sizeof(GpgpAxiom) < info.axiomCount)
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "axioms.size is %llu bytes, axiomCount %u needs %llu",
+                           static_cast<unsigned long long>(info.axioms.size), info.axiomCount,
+                           static_cast<unsigned long long>(info.axiomCount) * sizeof(GpgpAxiom));
+  return {};
+}
+} // namespace
+
 core::Result<void> TileSet::record(VkCommandBuffer commandBuffer, const GpgpTileInfo& info, Spawner& derives,
                                    const Grammar& asset, GpgpTile& tile) {
+  if (auto ok = checkInfo(info); !ok) return ok;
   Tile* const old = tile ? find(tile) : nullptr;
   const auto full = [](const char* what) { return core::makeError(GPGP_BUDGET_EXCEEDED, "%s", what); };
   if (!old && freeSlots_.empty()) return full("there are maxTiles tiles");

@@ -122,7 +122,44 @@ Canvas::Canvas(core::Context& owner, const GpgpCanvasCreateInfo& info)
       images_(sizes_.imagePages > 1 ? sizes_.imagePages * shader::kPageImages : 0, &owner.host()),
       imagesHold_(sizes_.imagePages, &owner.host()), damage_(sizes_.damageWords(), &owner.host()) {}
 
+namespace {
+Result<void> checkBudgets(const GpgpCanvasCreateInfo& info) {
+  if (info.maxWidth > 16384 || info.maxHeight > 16384)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxWidth x maxHeight is %u x %u; at most 16384 x 16384",
+                     info.maxWidth, info.maxHeight);
+  if (info.maxPaths > 1u << 22)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxPaths is %u; at most 4194304", info.maxPaths);
+  if (info.maxTileEntries > 1u << 28)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTileEntries is %u; at most 268435456", info.maxTileEntries);
+  if (info.maxTileWords > 1u << 28)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTileWords is %u; at most 268435456", info.maxTileWords);
+  if (info.maxDrawings > 65536)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxDrawings is %u; at most 65536", info.maxDrawings);
+  if (info.maxGlyphs > 1u << 20)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxGlyphs is %u; at most 1048576", info.maxGlyphs);
+  if (info.maxShapes > 1u << 20)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxShapes is %u; at most 1048576", info.maxShapes);
+  if (info.targets & ~(GPGP_CANVAS_TARGET_HISTORY | GPGP_CANVAS_TARGET_RGBA8 | GPGP_CANVAS_TARGET_RGBA16F))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "targets has unknown bits");
+  if (info.maxLayerPixels > 1u << 28)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxLayerPixels is %u; at most 268435456", info.maxLayerPixels);
+  if (info.maxLayerOperations > 65536)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxLayerOperations is %u; at most 65536", info.maxLayerOperations);
+  if (info.method < GPGP_CANVAS_FLATTENED || info.method > GPGP_CANVAS_PATCHES)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "method is %d", info.method);
+  if (info.maxTilePatches > 1u << 28)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTilePatches is %u; at most 268435456", info.maxTilePatches);
+  if (info.maxImages > GPGP_MAX_IMAGES)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxImages is %u; at most %u (GPGP_MAX_IMAGES)", info.maxImages,
+                     GPGP_MAX_IMAGES);
+  if (info.maxImagePixels > 1u << 28)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxImagePixels is %u; at most 268435456", info.maxImagePixels);
+  return {};
+}
+} // namespace
+
 Result<core::Unique<Canvas>> Canvas::create(core::Context& context, const GpgpCanvasCreateInfo& info) {
+  if (auto ok = checkBudgets(info); !ok) return ok.error();
   auto canvas = core::makeUnique<Canvas>(context.host(), context, info);
   const DrawShaders draw{{"draw.vert", vector_draw_vert},
                          {"draw.frag", vector_draw_frag},

@@ -51,10 +51,56 @@ core::Result<core::Unique<SegmentPage>> SegmentPage::create(core::Context& conte
   return page;
 }
 
-core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& context, const char* label,
-                                                              Drawing&& drawing, bool editable, bool hitTestable,
-                                                              GpgpDrawingMethods methods, const DrawingAsset* base,
-                                                              std::span<const GpgpPathEdit> edits) {
+core::Result<void> checkMethods(GpgpDrawingMethods methods) {
+  if (methods & ~(GPGP_DRAWING_FLATTENED | GPGP_DRAWING_IN_PASS | GPGP_DRAWING_PATCHES))
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "methods has unknown bits");
+  if ((methods & GPGP_DRAWING_PATCHES) && !(methods & GPGP_DRAWING_FLATTENED))
+    return core::makeError(
+        GPGP_ERROR_INVALID_ARGUMENT,
+        "methods has GPGP_DRAWING_PATCHES without GPGP_DRAWING_FLATTENED, which canvases need as well");
+  return {};
+}
+
+core::Result<core::Unique<DrawingAsset>> DrawingAsset::create(core::Context& context, const GpgpDrawingCreateInfo& info,
+                                                              const DrawingAsset* base) {
+  if (auto ok = checkMethods(info.methods); !ok) return ok.error();
+  if ((info.editable || info.hitTestable || info.base) && info.methods && !(info.methods & GPGP_DRAWING_FLATTENED))
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                           "methods has no GPGP_DRAWING_FLATTENED, which edits and hit tests need");
+  if (base && !base->kept()) return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "base was not made editable");
+  std::pmr::memory_resource* memory = &context.host();
+  const std::span edits(info.edits, info.editCount);
+  const bool flattened = info.methods == 0 || (info.methods & GPGP_DRAWING_FLATTENED);
+  const uint64_t mostBytes = flattened ? outlineBytes(context.device.limits.maxStorageBufferRange) : UINT64_MAX;
+  const auto convert = [&]() -> core::Result<Drawing> {
+    if (base) return replacePaths(base->kept()->drawing, edits, memory, mostBytes);
+    if (info.paths)
+      return makeDrawing(std::span(info.paths, info.pathCount), std::span(info.groups, info.groupCount), memory,
+                         &context.jobSystem, nullptr, mostBytes);
+    if (info.data) return loadBaked(std::span(static_cast<const std::byte*>(info.data), info.size), memory);
+    const auto bytes = context.readFile(info.filePath);
+    if (!bytes) return bytes.error();
+    return loadBaked(*bytes, memory);
+  };
+  auto made = convert();
+  if (!made) return made.error();
+  const GpgpDrawingMethods held = methodsOf(*made), methods = info.methods ? info.methods : held;
+  if ((held & GPGP_DRAWING_FLATTENED) == 0 && (methods != GPGP_DRAWING_IN_PASS || info.editable || info.hitTestable))
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                           "the drawing was baked without GPGP_DRAWING_FLATTENED; bake it with both methods");
+  if (!made->plan.empty() && (info.editable || info.hitTestable || (methods & GPGP_DRAWING_IN_PASS)))
+    return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing has layers: it cannot be %s",
+                           info.editable      ? "editable"
+                           : info.hitTestable ? "hitTestable"
+                                              : "drawn inside a render pass (GPGP_DRAWING_IN_PASS)");
+  return make(context, info.label, std::move(*made), info.editable != VK_FALSE, info.hitTestable != VK_FALSE, methods,
+              base, edits);
+}
+
+core::Result<core::Unique<DrawingAsset>> DrawingAsset::make(core::Context& context, const char* label,
+                                                            Drawing&& drawing, bool editable, bool hitTestable,
+                                                            GpgpDrawingMethods methods, const DrawingAsset* base,
+                                                            std::span<const GpgpPathEdit> edits) {
   auto asset = core::makeUnique<DrawingAsset>(context.host(), context, label);
   asset->curves_ = static_cast<uint32_t>(drawing.curves.size());
   const bool flattened = (methods & GPGP_DRAWING_FLATTENED) != 0;
@@ -182,6 +228,12 @@ void DrawingAsset::setLayers(const Drawing& drawing, const Outlines& outlines) {
 
 core::Result<core::Unique<CanvasHistory>> CanvasHistory::create(core::Context& context,
                                                                 const GpgpCanvasHistoryCreateInfo& info) {
+  const bool pictured = info.width || info.height || info.maxKept == 0;
+  if (pictured && (info.width == 0 || info.height == 0 || info.width > 16384 || info.height > 16384))
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "width x height is %u x %u; expected 1 x 1 to 16384 x 16384",
+                           info.width, info.height);
+  if (info.maxKept > 1u << 22)
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxKept is %u; at most 4194304", info.maxKept);
   auto view = core::makeUnique<CanvasHistory>(context.host(), context, info.label);
   view->width = info.width;
   view->height = info.height;

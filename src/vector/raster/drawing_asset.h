@@ -31,6 +31,9 @@ public:
   uint32_t end = 0; ///< in the drawing's segments: those of the next page begin there
 };
 
+/// Bits that there are, and that go together.
+core::Result<void> checkMethods(GpgpDrawingMethods methods);
+
 class DrawingAsset final : public core::Resident {
 public:
   /// What edited drawings are made from.
@@ -44,12 +47,9 @@ public:
     std::span<const PathRecord> paths;
     std::span<const ClipRecord> clips;
   };
-  /// `base` and `edits`: where the drawing comes from replacePaths, what its other outlines are taken from. `patches`:
-  /// those of the file that it comes from; none: they are made where `methods` asks for them.
-  static core::Result<core::Unique<DrawingAsset>> create(core::Context& context, const char* label, Drawing&& drawing,
-                                                         bool editable, bool hitTestable, GpgpDrawingMethods methods,
-                                                         const DrawingAsset* base = nullptr,
-                                                         std::span<const GpgpPathEdit> edits = {});
+  /// Converts what the info has, or loads what was baked. base: the asset of info.base, or null.
+  static core::Result<core::Unique<DrawingAsset>> create(core::Context& context, const GpgpDrawingCreateInfo& info,
+                                                         const DrawingAsset* base);
   DrawingAsset(core::Context& owner, const char* name)
       : Resident(owner, core::Kind::drawing, name), plan_(&owner.host()), layerBounds_(&owner.host()),
         lattices_(&owner.host()), ends_(&owner.host()), tilePatchEnds_(&owner.host()), pages_(&owner.host()) {}
@@ -108,6 +108,12 @@ public:
 
 private:
   core::Result<void> placeSegments(DrawingTables& tables);
+  /// `base` and `edits`: where the drawing comes from replacePaths, what its other outlines are taken from. `patches`:
+  /// those of the file that it comes from; none: they are made where `methods` asks for them.
+  static core::Result<core::Unique<DrawingAsset>> make(core::Context& context, const char* label, Drawing&& drawing,
+                                                       bool editable, bool hitTestable, GpgpDrawingMethods methods,
+                                                       const DrawingAsset* base = nullptr,
+                                                       std::span<const GpgpPathEdit> edits = {});
   void setLayers(const Drawing& drawing, const Outlines& outlines);
   LayerPlan plan_;
   LayerBounds layerBounds_;

@@ -1,12 +1,14 @@
 #include "vector/raster/glyph_set.h"
 
 #include "vector/patch/patches.h"
+#include "vector/raster/drawing_asset.h"
 #include "vector/raster/segments.h"
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 namespace gpgp::vector {
 namespace {
@@ -18,9 +20,17 @@ constexpr uint32_t kDefaultGlyphs = 4096;
 constexpr VkDeviceSize kDefaultBytes = VkDeviceSize(8) << 20;
 constexpr uint32_t kGenerations = 1u << (32 - GlyphSet::kPlaceBits);
 
+uint32_t countPaints(const Drawing& drawing, size_t firstPath, size_t end) {
+  uint32_t count = 0;
+  for (size_t i = firstPath; i < end; ++i) count += drawing.paths[i].paint != 0;
+  return count;
+}
+uint32_t divide(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
+} // namespace
+
 /// The outlines of glyphs in a row, and how many segments and vec4 of gradients there are up to the end of
 /// each path; and the glyphs' patches.
-struct Tables {
+struct GlyphSet::Tables {
   Outlines outlines;
   std::pmr::vector<uint64_t> gradients;
   std::pmr::vector<shader::uvec4> words;
@@ -68,38 +78,39 @@ public:
   }
   uint64_t sizeOf(size_t glyph, size_t path, uint32_t paths) const { return outlinesOf(path, paths) + wordsOf(glyph); }
 };
-uint32_t countPaints(const Drawing& drawing, size_t firstPath, size_t end) {
-  uint32_t count = 0;
-  for (size_t i = firstPath; i < end; ++i) count += drawing.paths[i].paint != 0;
-  return count;
-}
-uint32_t divide(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
-} // namespace
 
 GlyphSet::GlyphSet(core::Context& owner, const char* name)
     : Resident(owner, core::Kind::glyphSet, name), glyphs_(&owner.host()), places_(&owner.host()),
       cells_(&owner.host()), freeBlocks_(&owner.host()) {}
 
 core::Result<core::Unique<GlyphSet>> GlyphSet::create(core::Context& context, const GpgpGlyphSetCreateInfo& info,
-                                                      const Glyphs* baked) {
+                                                      std::span<const std::byte> bytes) {
+  if (info.methods & GPGP_DRAWING_PATCHES)
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
+                           "glyph sets have no GPGP_DRAWING_PATCHES: canvases flatten text");
+  if (auto ok = checkMethods(info.methods); !ok) return ok.error();
+  std::optional<Glyphs> baked;
+  if (info.data || info.filePath) {
+    auto loaded = loadBakedGlyphs(bytes, &context.host());
+    if (!loaded) return loaded.error();
+    baked.emplace(std::move(*loaded));
+  }
   const GpgpDrawingMethods methods = info.methods ? info.methods : GPGP_DRAWING_FLATTENED;
   const size_t bakedGlyphs = baked ? baked->entries.size() : 0;
   VkDeviceSize bakedBytes = 0;
+  std::optional<Tables> tables;
   if (baked) {
-    const Tables tables(*baked, methods, context);
+    tables.emplace(*baked, methods, context);
     size_t path = 0;
     for (size_t i = 0; i < bakedGlyphs; ++i) {
-      bakedBytes += tables.sizeOf(i, path, baked->entries[i].paths) * 16;
+      bakedBytes += tables->sizeOf(i, path, baked->entries[i].paths) * 16;
       path += baked->entries[i].paths;
     }
   }
   const size_t maxGlyphs = info.maxGlyphs ? info.maxGlyphs : baked ? std::max<size_t>(bakedGlyphs, 1) : kDefaultGlyphs;
   const VkDeviceSize maxBytes = info.maxBytes ? info.maxBytes : baked ? bakedBytes : kDefaultBytes;
-  if (maxGlyphs > kMaxGlyphs || maxBytes > context.device.limits.maxStorageBufferRange)
-    return core::makeError(GPGP_ERROR_UNSUPPORTED,
-                           "%zu glyphs of %llu bytes; a set has at most %u, and this device binds at most %u bytes",
-                           maxGlyphs, static_cast<unsigned long long>(maxBytes), kMaxGlyphs,
-                           context.device.limits.maxStorageBufferRange);
+  if (maxGlyphs > kMaxGlyphs)
+    return core::makeError(GPGP_ERROR_UNSUPPORTED, "%zu glyphs; a set has at most %u", maxGlyphs, kMaxGlyphs);
   if (bakedGlyphs > maxGlyphs || bakedBytes > maxBytes / 16 * 16)
     return core::makeError(
         GPGP_ERROR_INVALID_ARGUMENT, "the baked glyphs need maxGlyphs %zu and maxBytes %llu; they are %zu and %llu",
@@ -116,7 +127,7 @@ core::Result<core::Unique<GlyphSet>> GlyphSet::create(core::Context& context, co
   set->freeBlocks_.reserve(maxGlyphs + 2);
   set->freeBlocks_.push_back({0, set->capacity_});
   if (auto ok = set->makeGrowing(GPGP_SERVICE_VECTOR, maxBytes, Room::shared); !ok) return ok.error();
-  if (baked) set->add(*baked, 0);
+  if (baked) set->add(*baked, *tables, 0);
   return set;
 }
 
@@ -125,8 +136,11 @@ bool GlyphSet::evictable(const Glyph& glyph) const {
 }
 
 bool GlyphSet::add(const Glyphs& glyphs, uint64_t frame) {
+  return add(glyphs, Tables(glyphs, methods_, context), frame);
+}
+
+bool GlyphSet::add(const Glyphs& glyphs, const Tables& tables, uint64_t frame) {
   std::pmr::memory_resource* memory = &context.host();
-  const Tables tables(glyphs, methods_, context);
   std::pmr::vector<uint32_t> added(memory);
   added.reserve(glyphs.entries.size());
   reserveRanges(glyphs.entries.size());

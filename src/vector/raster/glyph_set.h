@@ -31,9 +31,9 @@ public:
     /// By any number of records side by side.
     void use(uint64_t frame) const { std::atomic_ref(lastUsed).store(frame, std::memory_order_relaxed); }
   };
-  /// `baked`: where not null, what is there from the beginning.
+  /// bytes: what info.data or info.filePath have, where one of them is set; their glyphs are there from the beginning.
   static core::Result<core::Unique<GlyphSet>> create(core::Context& context, const GpgpGlyphSetCreateInfo& info,
-                                                     const Glyphs* baked);
+                                                     std::span<const std::byte> bytes);
   GlyphSet(core::Context& owner, const char* name);
 
   /// Adds those whose keys are new, as used in `frame`, as far as there is room; false where that did not suffice.
@@ -62,6 +62,8 @@ public:
   static constexpr uint32_t kPlaceBits = 18, kMaxGlyphs = 1u << kPlaceBits;
 
 private:
+  struct Tables; ///< what glyphs are converted to
+  bool add(const Glyphs& glyphs, const Tables& tables, uint64_t frame);
   struct Block { // of the buffer, in vec4
     uint32_t first, size;
   };

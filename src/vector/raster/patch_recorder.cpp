@@ -114,6 +114,10 @@ PatchRecorder::PatchRecorder(core::Context& owner, const GpgpPatchRecorderCreate
 
 Result<core::Unique<PatchRecorder>> PatchRecorder::create(core::Context& context,
                                                           const GpgpPatchRecorderCreateInfo& info) {
+  if (info.maxItems > 65536)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxItems is %u; at most 65536", info.maxItems);
+  if (info.maxGlyphs > 1u << 20)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxGlyphs is %u; at most 1048576", info.maxGlyphs);
   auto recorder = core::makeUnique<PatchRecorder>(context.host(), context, info);
   core::PassList list(&context.host());
   constexpr const char* kNames[shader::kPatchBuffers] = {"drawing 0", "drawing 1", "drawing 2", "drawing 3",

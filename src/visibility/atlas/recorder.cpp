@@ -19,7 +19,20 @@ uint64_t Atlas::bytesFor(uint32_t maxTriangles) {
   return (shader::kHeadWords + uint64_t(maxTriangles) + (uint64_t(maxTriangles) + 15) / 16) * 4;
 }
 
+namespace {
+Result<void> checkTriangles(uint32_t maxTriangles) {
+  if (maxTriangles > shader::kMaxAtlasTriangles)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTriangles is %u; at most %u", maxTriangles,
+                     shader::kMaxAtlasTriangles);
+  return {};
+}
+} // namespace
+
 Result<core::Unique<Atlas>> Atlas::create(core::Context& context, const GpgpAtlasCreateInfo& info) {
+  if (info.width % shader::kSuperSide || info.height % shader::kSuperSide || info.width > 8192 || info.height > 8192)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "width x height is %u x %u; expected multiples of %u up to 8192",
+                     info.width, info.height, shader::kSuperSide);
+  if (auto ok = checkTriangles(info.maxTriangles); !ok) return ok.error();
   auto atlas = core::makeUnique<Atlas>(context.host(), context, info);
   std::pmr::vector<std::byte> none(&context.host());
   if (auto ok = atlas->makeResident(GPGP_SERVICE_VISIBILITY, std::move(none), bytesFor(atlas->maxTriangles_)); !ok)
@@ -39,6 +52,9 @@ AtlasRecorder::AtlasRecorder(core::Context& owner, const GpgpAtlasRecorderCreate
 
 Result<core::Unique<AtlasRecorder>> AtlasRecorder::create(core::Context& context,
                                                           const GpgpAtlasRecorderCreateInfo& info) {
+  if (auto ok = checkTriangles(info.maxTriangles); !ok) return ok.error();
+  if (info.maxBuckets > shader::kMaxBuckets)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxBuckets is %u; at most %u", info.maxBuckets, shader::kMaxBuckets);
   auto recorder = core::makeUnique<AtlasRecorder>(context.host(), context, info);
   if (auto ok = recorder->init(describeAtlasPasses(recorder->budgets_, &context.host())); !ok) return ok.error();
   return recorder;

@@ -6,11 +6,44 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace gpgp::visibility {
 using core::makeError;
 using core::Result;
+
+Result<void> checkCreateInfo(const GpgpVisibilityRecorderCreateInfo& info) {
+  if (info.maxWidth > 8192 || info.maxHeight > 8192)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxWidth x maxHeight is %u x %u; at most 8192 x 8192", info.maxWidth,
+                     info.maxHeight);
+  if (info.maxCameras > shader::kMaxCameras)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxCameras is %u; at most %u", info.maxCameras, shader::kMaxCameras);
+  if (info.maxTriangles > 1u << 30)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTriangles is %u; at most 1073741824", info.maxTriangles);
+  if (info.maxSamples > 64 || (info.maxSamples & (info.maxSamples - 1)))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxSamples is %u; expected a power of two up to 64",
+                     info.maxSamples);
+  if (info.methods & ~(GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT | GPGP_SAMPLING_REFERENCE_BIT |
+                       GPGP_SAMPLING_CONSERVATIVE_BIT | GPGP_SAMPLING_NEARBY_BIT))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "methods is 0x%x; it has unknown bits", info.methods);
+  return {};
+}
+
 namespace {
+
+bool isFinite(const GpgpCamera& camera) {
+  return std::all_of(std::begin(camera.viewProjection), std::end(camera.viewProjection),
+                     [](float v) { return std::isfinite(v); });
+}
+Result<void> checkCameras(const GpgpVisibilityInfo& info) {
+  if (!isFinite(info.camera))
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "camera.viewProjection holds a number that is not finite");
+  for (uint32_t i = 0; i < info.moreCameraCount; ++i)
+    if (!isFinite(info.moreCameras[i]))
+      return makeError(GPGP_ERROR_INVALID_ARGUMENT, "moreCameras[%u].viewProjection holds a number that is not finite",
+                       i);
+  return {};
+}
 
 bool isOrigin(const double* origin) {
   return std::all_of(origin, origin + 3, [](double v) { return v > -1e30 && v < 1e30; });
@@ -53,6 +86,7 @@ Result<void> checkSampling(const GpgpVisibilityInfo& info, const Budgets& budget
   if (!cameras)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "moreCameraCount is %u; the recorder was made for %u cameras in all",
                      info.moreCameraCount, budgets.maxCameras);
+  if (auto ok = checkCameras(info); !ok) return ok;
   for (uint32_t i = 0; i < info.moreCameraCount; ++i)
     if (!info.moreCameras[i].reversedDepth != !info.camera.reversedDepth)
       return makeError(GPGP_ERROR_INVALID_ARGUMENT, "moreCameras[%u].reversedDepth is not the first camera's", i);

@@ -85,6 +85,7 @@ VisibilityRecorder::VisibilityRecorder(core::Context& owner, const GpgpVisibilit
 
 Result<core::Unique<VisibilityRecorder>> VisibilityRecorder::create(core::Context& context,
                                                                     const GpgpVisibilityRecorderCreateInfo& info) {
+  if (auto ok = checkCreateInfo(info); !ok) return ok.error();
   auto recorder = core::makeUnique<VisibilityRecorder>(context.host(), context, info);
   if (auto ok = recorder->init(describePasses(recorder->budgets_, context.device, &context.host())); !ok)
     return ok.error();
