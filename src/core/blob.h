@@ -8,9 +8,13 @@
 
 namespace gpgp::core {
 
-/// A copy, which gpgpFreeBlob frees; without data where there is no memory for it.
+/// Bytes that gpgpFreeBlob frees; without data where there is no memory for them.
+inline GpgpBlob newBlob(size_t size) { return {std::malloc(size), size}; }
+inline std::span<std::byte> bytesOf(const GpgpBlob& blob) { return {static_cast<std::byte*>(blob.data), blob.size}; }
+
+/// A copy in a new blob.
 inline GpgpBlob copyToBlob(std::span<const std::byte> bytes) {
-  const GpgpBlob blob{std::malloc(bytes.size()), bytes.size()};
+  const GpgpBlob blob = newBlob(bytes.size());
   if (blob.data) std::memcpy(blob.data, bytes.data(), blob.size);
   return blob;
 }

@@ -78,6 +78,43 @@ std::string word(uint32_t value) {
   return bytes;
 }
 
+TEST(CliVisibilityGltf, FarFromTheOriginNodesKeepTheirForm) {
+  // A square of 2 cm, where floats are 8 mm apart: placed by its node, by an instance, and by the joint of a skin.
+  Maker made;
+  made.node()["scale"] = {0.02, 0.02, 0.02};
+  const auto look = [](const Maker& model) {
+    const TemporaryFile file("far.gltf", model.text());
+    return gpgpJson({"visibility", file.path(), "--method", "exact", "--size", "64x48"});
+  };
+  const json near = look(made);
+  EXPECT_EQ(near["visible"], 2);
+  const auto expectTheSame = [&](const Maker& far) {
+    const json found = look(far);
+    EXPECT_EQ(found["visible"], near["visible"]) << far.gltf;
+    EXPECT_EQ(found["coveredPixels"], near["coveredPixels"]) << far.gltf;
+  };
+  Maker placed = made;
+  placed.node()["translation"] = {1e5 + 0.003, 0.7e5, -1.3e5};
+  expectTheSame(placed);
+  Maker instanced = placed;
+  instanced.node()["scale"] = {1, 1, 1};
+  instanced.add<float>("VEC3", 5126, {0, 0, 0});
+  instanced.add<float>("VEC3", 5126, {0.02f, 0.02f, 0.02f});
+  instanced.gltf["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  instanced.node()["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", 1}, {"SCALE", 2}};
+  expectTheSame(instanced);
+  Maker skinned = made;
+  skinned.node()["skin"] = 0;
+  skinned.gltf["nodes"].push_back({{"translation", {1e5 + 0.003, 0.7e5, -1.3e5}}, {"scale", {0.02, 0.02, 0.02}}});
+  skinned.gltf["scenes"][0]["nodes"] = {0, 1};
+  skinned.gltf["skins"] = {{{"joints", {1}}}};
+  skinned.add<uint8_t>("VEC4", 5121, std::vector<uint8_t>(24, 0));
+  skinned.add<float>("VEC4", 5126, {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+  skinned.primitive()["attributes"]["JOINTS_0"] = 1;
+  skinned.primitive()["attributes"]["WEIGHTS_0"] = 2;
+  expectTheSame(skinned);
+}
+
 TEST(CliVisibilityGltf, AlphaIsNamed) {
   const json masked = seen(std::string(kCases) + "alpha_MASK.gltf");
   EXPECT_FALSE(notes(masked, "alpha-tested")) << masked;

@@ -86,6 +86,49 @@ glm::dmat4 orbitCamera(int k, int n, double radii, double elevation = 20, double
   return projection * glm::lookAtRH(eye, centre, glm::dvec3(0, 1, 0));
 }
 
+/// An .obj whose vertices lie elsewhere.
+std::string moved(const std::string& obj, const glm::dvec3& by) {
+  std::istringstream in(obj);
+  std::ostringstream out;
+  out.precision(17);
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line);
+    std::string word;
+    glm::dvec3 at;
+    if (words >> word >> at.x >> at.y >> at.z && word == "v")
+      out << "v " << at.x + by.x << ' ' << at.y + by.y << ' ' << at.z + by.z << '\n';
+    else
+      out << line << '\n';
+  }
+  return out.str();
+}
+
+TEST(CliVisibilityViews, FarFromTheOriginAModelKeepsItsForm) {
+  // There floats are 8 mm apart, and the ball's triangles 3 to 65 mm wide.
+  const glm::dvec3 by(1e5, 0.7e5, -1.3e5);
+  const TemporaryFile near("near.obj", ball()), far("far.obj", moved(ball(), by));
+  const auto look = [&](const TemporaryFile& model, const Args& camera) {
+    return idsOf(Args{"visibility", model.path(), "--method", "exact", "--size", "200x150"} + camera);
+  };
+  for (const Args& camera : {Args{}, Args{"--orbit", "3"}}) {
+    const Ids found = look(near, camera);
+    EXPECT_LE(differenceOf(found, look(far, camera)), found.size() / 500);
+  }
+  glm::dmat4 projection = glm::perspectiveRH_ZO(0.9, 200.0 / 150, 0.5, 20.0);
+  projection[1][1] *= -1;
+  const glm::dmat4 view = projection * glm::lookAtRH(glm::dvec3(6, 4, 0), glm::dvec3(5, 2, -3), {0, 1, 0});
+  const auto file = [](const glm::dmat4& camera) {
+    std::ostringstream text;
+    text.precision(17);
+    for (int i = 0; i < 16; ++i) text << camera[i / 4][i % 4] << ' ';
+    return text.str();
+  };
+  const TemporaryFile here("here.cam", file(view)), there("there.cam", file(glm::translate(view, -by)));
+  const Ids found = look(near, {"--camera", here.path()});
+  EXPECT_GT(found.size(), 2000u);
+  EXPECT_LE(differenceOf(found, look(far, {"--camera", there.path()})), found.size() / 500);
+}
+
 TEST(CliVisibilityViews, OrbitIsWhereItIsStated) {
   const TemporaryFile model("ball.obj", ball());
   const Args plain{"visibility", model.path(), "--size", "96x64"};

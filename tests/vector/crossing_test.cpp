@@ -271,7 +271,7 @@ size_t segmentsOf(const GpgpPath& path) {
 
 TEST(OutlineRoom, WhatIsTakenIsWhatOutlinesHave) {
   constexpr uint64_t kBytes = sizeof(shader::SegmentRecord);
-  const TestPath paths[] = {random(200, true), random(200, false), bars(30), fan(60), sharedSides(40)};
+  const TestPath paths[] = {random(200, true), random(800, false), bars(30), fan(60), sharedSides(40)};
   for (const TestPath& path : paths)
     for (const GpgpFillRule rule : {GPGP_FILL_NON_ZERO, GPGP_FILL_EVEN_ODD}) {
       GpgpPath view = path.view();
@@ -338,6 +338,41 @@ TEST(OutlineRoom, WhatDoesNotFitIsRefusedSoon) {
   for (GpgpPath& one : many) one.fillRule = GPGP_FILL_EVEN_ODD;
   const double each = seconds([&] { EXPECT_TRUE(vector::makeDrawing(std::span(many).first(5), heap())); }) / 5;
   EXPECT_LT(refused(many), 0.25 * 300 * each);
+  // Tangles of which a dozen fit: none of them is converted, neither by the rule that makes many corners of each nor by
+  // the one that makes few.
+  const TestPath lines = random(3000, false);
+  for (const GpgpFillRule rule : {GPGP_FILL_NON_ZERO, GPGP_FILL_EVEN_ODD}) {
+    many.assign(30, lines.view());
+    for (GpgpPath& one : many) one.fillRule = rule;
+    const double one = seconds([&] { EXPECT_TRUE(vector::makeDrawing(std::span(many).first(1), heap())); });
+    EXPECT_LT(refused(many), 5 * one) << rule;
+  }
+}
+
+TEST(OutlineRoom, LargeTablesAreUsedAgain) {
+  struct Counting : std::pmr::memory_resource {
+    size_t held = 0, most = 0;
+    void* do_allocate(size_t bytes, size_t alignment) override {
+      most = std::max(most, held += bytes);
+      return heap()->allocate(bytes, alignment);
+    }
+    void do_deallocate(void* data, size_t bytes, size_t alignment) override {
+      held -= bytes;
+      heap()->deallocate(data, bytes, alignment);
+    }
+    bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override { return this == &other; }
+  } counting;
+  const TestPath path = random(1000, true);
+  GpgpPath view = path.view();
+  view.fillRule = GPGP_FILL_EVEN_ODD; // the drawing is large as well
+  {
+    const auto drawing = vector::makeDrawing(std::span(&view, 1), &counting);
+    ASSERT_TRUE(drawing);
+    const size_t made = drawing->patches.size() * sizeof drawing->patches[0];
+    EXPECT_GT(made, size_t(1) << 24);
+    EXPECT_LT(counting.most, 4 * made); // 4.5 where each stage takes tables of its own
+  }
+  EXPECT_EQ(counting.held, 0u);
 }
 
 TEST(Crossings, InversionsAreCounted) {

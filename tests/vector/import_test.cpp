@@ -371,6 +371,32 @@ TEST(SvgImport, APathOfTooManyCrossingsIsLeftOut) {
   gpgpFreeBlob(&blob);
 }
 
+TEST(SvgImport, AnOutlineThatIsRefusedHasItsPlace) {
+  const auto refused = [](const std::string& inside, uint32_t segments) {
+    const std::string text = "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>\n" + inside + "</svg>";
+    Texts messages;
+    GpgpSvgSource source = GPGP_SVG_SOURCE_INIT;
+    source.name = "a.svg";
+    source.data = text.data();
+    source.size = text.size();
+    source.maxStorageBufferRange = 64 * segments;
+    source.messageUserData = &messages;
+    source.messageFn = [](void* user, const GpgpMessage* m) { static_cast<Texts*>(user)->push_back(placed(*m)); };
+    GpgpBlob blob{};
+    EXPECT_EQ(gpgpCompileSvg(&source, &blob), GPGP_ERROR_UNSUPPORTED);
+    EXPECT_EQ(blob.data, nullptr);
+    return messages;
+  };
+  const std::string square = "<rect width='5' height='5'/>\n"; // two segments, besides level ones
+  EXPECT_EQ(refused(square + square + "<g><circle r='3'/></g>", 5),
+            Texts{"a.svg:4:4: error: <circle>: the drawing's outlines need more than 320 bytes, which is what a device "
+                  "binds at most"});
+  const std::string clip = "<clipPath id='c'>\n<circle r='3'/></clipPath><g clip-path='url(#c)'>" + square + "</g>";
+  EXPECT_EQ(refused(clip, 3),
+            Texts{"a.svg:3:1: error: <circle>: the drawing's outlines need more than 192 bytes, which "
+                  "is what a device binds at most"});
+}
+
 TEST(SvgImport, Colours) {
   const struct {
     const char* attributes;

@@ -22,6 +22,7 @@
 #include <filesystem>
 #include <span>
 #include <sstream>
+#include <variant>
 
 namespace gpgp::cli {
 namespace {
@@ -82,12 +83,16 @@ const char* endingOf(std::string_view type) {
   return type == "drawing" ? ".gpgpv" : type == "font" ? ".gpgpf" : ".gpgp";
 }
 
-std::string bytesOf(const Blob& blob) {
+/// Of a baked file, without a copy of what a compiler made.
+using Bytes = std::variant<std::string, Blob>;
+std::string_view view(const Bytes& bytes) {
+  if (const auto* text = std::get_if<std::string>(&bytes)) return *text;
+  const Blob& blob = std::get<Blob>(bytes);
   return {static_cast<const char*>(static_cast<const void*>(blob.data())), blob.size()};
 }
 
 struct Baked {
-  std::string bytes;
+  Bytes bytes;
   Json json = Json::object(); ///< what only this type tells
   std::string words;
 };
@@ -114,22 +119,22 @@ Baked bakeDrawing(const std::string& text, const std::string& file, const std::s
   Result<Blob> blob = compileSvg(source);
   if (!blob) throw Failure(messages.count() ? messages.failure() : name + ": " + blob.name());
   messages.finish();
-  return {bytesOf(*blob), {{"messages", messages.json()}}, {}};
+  return {std::move(*blob), {{"messages", messages.json()}}, {}};
 }
 #endif
 
 #ifdef GPGP_CLI_SPAWN
 /// names: of the files, as the command line has them.
-std::string bakeGrammars(const BakeOptions& options, std::span<const GrammarText> texts, bool linked,
-                         const std::vector<std::string>& names) {
+Bytes bakeGrammars(const BakeOptions& options, std::span<const GrammarText> texts, bool linked,
+                   const std::vector<std::string>& names) {
   if (options.schedules.empty() && options.queues == "mixed")
-    return bytesOf(linked ? linkGrammars(texts, options.set, options.kernel)
-                          : compileGrammar(texts[0], options.set, options.kernel));
+    return linked ? linkGrammars(texts, options.set, options.kernel)
+                  : compileGrammar(texts[0], options.set, options.kernel);
   const std::vector<std::string> usual{"default"};
   const auto words =
       withKernels(bakeGraph(texts, linked, options.set), names, options.schedules.empty() ? usual : options.schedules,
                   options.heuristics, options.queues == "group" ? spawn::Queues::groups : spawn::Queues::mixed);
-  return {static_cast<const char*>(static_cast<const void*>(words.data())), words.size() * 4};
+  return std::string(static_cast<const char*>(static_cast<const void*>(words.data())), words.size() * 4);
 }
 #endif
 
@@ -148,7 +153,7 @@ Baked bakeOne([[maybe_unused]] const BakeOptions& options, const std::string& fi
 #ifdef GPGP_CLI_TEXT
   if (type == "font") {
     BakedFont font = bakeFont(bytes, name, options.font);
-    return {bytesOf(font.blob), std::move(font.json), ", " + font.words};
+    return {std::move(font.blob), std::move(font.json), ", " + font.words};
   }
 #endif
   throw Failure(name + ": this gpgp was built without what bakes a " + type);
@@ -169,8 +174,9 @@ Outcome bakeLinked([[maybe_unused]] const BakeOptions& options) {
       throw Usage(file.path + " is not a grammar; --link is for grammars");
     grammars.push_back({file, std::move(text)});
   }
-  const std::string bytes = bakeGrammars(options, grammars, true, options.in);
-  if (options.out == kStandard) return {Json::object(), bytes};
+  const Bytes made = bakeGrammars(options, grammars, true, options.in);
+  const std::string_view bytes = view(made);
+  if (options.out == kStandard) return {Json::object(), std::string(bytes)};
   host::writeFile(options.out, bytes);
   std::ostringstream text;
   text << joined(options.in) << ": grammar, " << bytes.size() << " bytes, " << options.out << '\n';
@@ -204,9 +210,10 @@ Outcome bake(const BakeOptions& options, const CommonOptions& common) {
   Outcome outcome{Json::object(), {}};
   Json list = Json::array();
   std::ostringstream text;
-  std::vector<std::pair<std::string, std::string>> files; // and their bytes: all are made before any is written
+  std::vector<std::pair<std::string, Baked>> files; // all are made before any is written
   for (const auto& [file, type, input] : work) {
-    auto [bytes, facts, words] = bakeOne(options, file, type, file == kStandard ? input : readInput(file));
+    Baked baked = bakeOne(options, file, type, file == kStandard ? input : readInput(file));
+    const std::string_view bytes = view(baked.bytes);
     if (options.out == kStandard) {
       outcome.text = bytes;
       return outcome;
@@ -217,11 +224,11 @@ Outcome bake(const BakeOptions& options, const CommonOptions& common) {
     for (const Json& other : list)
       if (other["out"] == out) throw Usage(file + ": another input goes to " + out + " as well");
     list.push_back({{"in", file}, {"type", type}, {"out", out}, {"bytes", bytes.size()}});
-    list.back().update(facts);
-    text << file << ": " << type << words << ", " << bytes.size() << " bytes, " << out << '\n';
-    files.emplace_back(out, std::move(bytes));
+    list.back().update(baked.json);
+    text << file << ": " << type << baked.words << ", " << bytes.size() << " bytes, " << out << '\n';
+    files.emplace_back(out, std::move(baked));
   }
-  for (const auto& [out, bytes] : files) host::writeFile(out, bytes);
+  for (const auto& [out, baked] : files) host::writeFile(out, view(baked.bytes));
   outcome.text = text.str();
   outcome.json = {{"baked", list}};
   return outcome;

@@ -49,14 +49,15 @@ void addDraw(Model& model, uint32_t mesh, const Rows& rows, uint32_t flags) {
   model.draws.push_back(draw);
 }
 
-Model loadModel(const std::filesystem::path& file) {
+Model loadModel(const std::filesystem::path& file, const glm::dvec3& origin) {
   std::string extension = file.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   Model model;
+  model.origin = origin;
   if (extension == ".obj")
-    model = loadObj(file);
+    loadObj(file, model);
   else if (extension == ".glb" || extension == ".gltf")
-    model = loadGltf(file);
+    loadGltf(file, model);
   else
     throw std::runtime_error(file.string() + ": not one of .glb, .gltf, .obj");
   if (model.triangleCount == 0) throw std::runtime_error(file.string() + ": holds no triangle");

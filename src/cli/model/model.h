@@ -25,6 +25,7 @@ struct AlphaTexture {
 };
 
 struct Model {
+  glm::dvec3 origin{0};                 ///< of the file's world: what is below is counted from there
   std::vector<float> positions;         ///< x, y, z
   std::vector<float> coordinates;       ///< texture coordinates by vertex; empty, or shorter: 0
   std::vector<AlphaTexture> alphaTests; ///< of draws that have GPGP_DRAW_ALPHA_TEST
@@ -36,8 +37,9 @@ struct Model {
   std::vector<std::string> notes; ///< what else is not shown as the file means it, each with how often
 };
 
-/// Throws std::runtime_error with the file's name, and the line for .obj.
-Model loadModel(const std::filesystem::path& file);
+/// Throws std::runtime_error with the file's name, and the line for .obj. What lies far from the world's origin keeps
+/// its form where `origin` lies near it.
+Model loadModel(const std::filesystem::path& file, const glm::dvec3& origin = glm::dvec3(0));
 
 /// Copies side by side, a tenth of the model's size apart (of its largest where it is flat), numbered one after the
 /// other. Throws std::runtime_error with what they need where a device that binds mostBytes of a buffer, or memory, has

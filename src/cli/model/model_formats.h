@@ -9,8 +9,9 @@ namespace gpgp::cli {
 using Rows = std::array<float, 12>; ///< rows of a 3x4 matrix
 constexpr Rows kIdentityRows = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
-Model loadObj(const std::filesystem::path& file);
-Model loadGltf(const std::filesystem::path& file);
+/// Readers count positions from the model's origin.
+void loadObj(const std::filesystem::path& file, Model& model);
+void loadGltf(const std::filesystem::path& file, Model& model);
 constexpr uint32_t kNoMesh = UINT32_MAX;
 /// Appends a mesh and returns its number; kNoMesh where it has no triangle.
 uint32_t addMesh(Model& model, const GpgpMesh& mesh);

@@ -159,7 +159,8 @@ private:
     }
     // The transform of a skinned mesh's node moves nothing (3.7.3.3).
     for (const glm::dmat4& instance : instancesOf(gltf_, node)) {
-      const glm::dmat4 placed = pose.skinned ? instance : world * instance;
+      const glm::dmat4 placed =
+          pose.skinned ? toOrigin_ * instance * glm::inverse(toOrigin_) : toOrigin_ * world * instance;
       Rows rows{};
       for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 4; ++column)
@@ -181,7 +182,7 @@ private:
     }
     std::vector<glm::dmat4> joints;
     for (const int joint : skin.joints) {
-      joints.push_back(worldOf(joint));
+      joints.push_back(toOrigin_ * worldOf(joint));
       if (!inverses.empty()) joints.back() *= glm::make_mat4(&inverses[(joints.size() - 1) * 16]);
     }
     return joints;
@@ -199,6 +200,7 @@ private:
 
   Model& model_;
   const tinygltf::Model& gltf_;
+  const glm::dmat4 toOrigin_ = glm::translate(glm::dmat4(1), -model_.origin); ///< from the world
   AlphaTests alphaTests_;
   std::vector<int> parents_;
   std::map<std::tuple<int, int, std::vector<double>>, std::vector<Part>> parts_; // by mesh, skin, weights
@@ -207,8 +209,7 @@ private:
 
 } // namespace
 
-Model loadGltf(const std::filesystem::path& file) {
-  Model model;
+void loadGltf(const std::filesystem::path& file, Model& model) {
   try {
     const tinygltf::Model gltf = readGltf(file, isRead);
     Reader reader(model, gltf, file.parent_path());
@@ -217,7 +218,6 @@ Model loadGltf(const std::filesystem::path& file) {
   } catch (const std::runtime_error& problem) {
     fail(file.string() + ": " + problem.what());
   }
-  return model;
 }
 
 } // namespace gpgp::cli

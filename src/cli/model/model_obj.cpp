@@ -37,9 +37,8 @@ bool skipOtherNumbers(char*& at) {
 
 } // namespace
 
-Model loadObj(const std::filesystem::path& file) {
+void loadObj(const std::filesystem::path& file, Model& model) {
   const std::string text = host::readText(file);
-  Model model;
   size_t lineNumber = 0;
   for (size_t begin = text.rfind("\xef\xbb\xbf", 0) == 0 ? 3 : 0, lines = 0; begin < text.size();) {
     lineNumber = lines + 1; // where it begins
@@ -57,7 +56,7 @@ Model loadObj(const std::filesystem::path& file) {
     if (at[0] == 'v' && (at[1] == ' ' || at[1] == '\t')) {
       ++at;
       for (int axis = 0; axis < 3; ++axis, at = next) {
-        const float value = std::strtof(at, &next);
+        const float value = static_cast<float>(std::strtod(at, &next) - model.origin[axis]);
         if (next == at || !isEndOfWord(*next) || !std::isfinite(value))
           fail(file, lineNumber, "a vertex needs three numbers");
         model.positions.push_back(value);
@@ -82,7 +81,6 @@ Model loadObj(const std::filesystem::path& file) {
     }
   }
   addDraw(model, addMesh(model, {0, static_cast<uint32_t>(model.indices.size()), 0}), kIdentityRows);
-  return model;
 }
 
 } // namespace gpgp::cli

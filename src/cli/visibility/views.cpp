@@ -25,18 +25,19 @@ View orbitView(const Bounds& bounds, uint32_t k, uint32_t n, float distance, Siz
   return {projection * view, false};
 }
 
-View readView(const std::string& file) {
+View readView(const std::string& file, const glm::dvec3& origin) {
   std::istringstream text(host::readText(file));
-  std::vector<float> numbers;
+  std::vector<double> numbers;
   for (std::string word; text >> word;) {
     char* end = nullptr;
-    numbers.push_back(std::strtof(word.c_str(), &end));
-    if (*end || !std::isfinite(numbers.back()))
+    numbers.push_back(std::strtod(word.c_str(), &end));
+    if (*end || !std::isfinite(static_cast<float>(numbers.back())))
       throw Failure(file + ": word " + std::to_string(numbers.size()) + ", '" + word + "', is not a finite number");
   }
   if (numbers.size() < 16 || numbers.size() > 17)
     throw Failure(file + ": holds " + std::to_string(numbers.size()) + " numbers; a camera is 16, or 17");
-  const View view{glm::make_mat4(numbers.data()), numbers.size() == 17 && numbers[16] != 0};
+  const glm::dmat4 camera = glm::translate(glm::make_mat4(numbers.data()), origin);
+  const View view{glm::mat4(camera), numbers.size() == 17 && numbers[16] != 0};
   if (glm::determinant(glm::dmat4(view.camera)) == 0) throw Failure(file + ": the matrix has no inverse");
   return view;
 }

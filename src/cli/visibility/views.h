@@ -21,9 +21,9 @@ struct View {
 /// the bounds away.
 View orbitView(const Bounds& bounds, uint32_t k, uint32_t n, float distance, Size size);
 
-/// 16 numbers, column-major, world to clip; a 17th that is not 0: near is 1. Throws Failure where the file holds
-/// anything else, or a matrix without inverse.
-View readView(const std::string& file);
+/// 16 numbers, column-major, world to clip; a 17th that is not 0: near is 1. The view is from where positions count
+/// from `origin`. Throws Failure where the file holds anything else, or a matrix without inverse.
+View readView(const std::string& file, const glm::dvec3& origin);
 
 /// Where a camera's x, y and w are all 0; parallel cameras have no such place.
 std::optional<glm::dvec3> eyeOf(const View& view);

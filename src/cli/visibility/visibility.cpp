@@ -52,9 +52,16 @@ Bounds boundsOf(const Model& model) {
   return bounds;
 }
 
+/// Where positions are to count from: floats have few digits left of the form of what lies far from their origin.
+glm::dvec3 originFor(const Bounds& bounds) {
+  constexpr float kFar = 64;                                                // radii
+  const bool isFar = glm::length(bounds.centre()) > kFar * bounds.radius(); // false where there are no bounds
+  return isFar && bounds.radius() > 0 ? glm::dvec3(bounds.centre()) : glm::dvec3(0);
+}
+
 /// Camera k: the file's, the orbit's, or one that sees everything.
-View viewOf(const VisibilityOptions& options, const Bounds& bounds, uint32_t k) {
-  if (!options.camera.empty()) return readView(options.camera);
+View viewOf(const VisibilityOptions& options, const Model& model, const Bounds& bounds, uint32_t k) {
+  if (!options.camera.empty()) return readView(options.camera, model.origin);
   if (!(bounds.low.x <= bounds.high.x)) throw Failure(options.model + ": no triangle has finite corners below 2^100");
   const glm::vec3 most = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
   if (const float reach = std::max({most.x, most.y, most.z}); reach > kMostReach) {
@@ -158,7 +165,7 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
   std::vector<std::optional<MotionCell>> motions(cameras);
   Size largest = options.size;
   for (uint32_t k = 0; k < cameras && options.motion; ++k) {
-    motions[k].emplace(*options.motion, options.eyes, viewOf(options, bounds, k), options.size);
+    motions[k].emplace(*options.motion, options.eyes, viewOf(options, model, bounds, k), options.size);
     const Size wide = motions[k]->sizeOf(0);
     largest = {std::max(largest.width, wide.width), std::max(largest.height, wide.height)};
   }
@@ -171,7 +178,7 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
     const std::string label =
         "sampling" +
         (cameras > 1 ? " from camera " + std::to_string(k + 1) + " of " + std::to_string(cameras) : std::string());
-    const View view = viewOf(options, bounds, k);
+    const View view = viewOf(options, model, bounds, k);
     const auto& motion = motions[k];
     std::vector<View> views = motion ? motion->views : viewsOf(cell, view, bounds.centre(), options.size.height);
     figures.viewPoints += static_cast<uint32_t>(views.size());
@@ -319,14 +326,18 @@ Outcome visibility(const VisibilityOptions& options, const CommonOptions& common
   if (options.needlessSamples)
     std::fprintf(stderr, "gpgp visibility: note: --samples changes nothing here; the exact method decides at points of "
                          "each triangle's own\n");
-  Model model = [&options] {
+  Model model;
+  Bounds bounds;
+  const auto read = [&](const glm::dvec3& origin) {
     const Progress progress("reading " + options.model);
-    return loadModel(options.model);
-  }();
+    model = loadModel(options.model, origin);
+    bounds = boundsOf(model);
+  };
+  read(glm::dvec3(0));
+  if (const glm::dvec3 origin = originFor(bounds); origin != glm::dvec3(0)) read(origin);
   if (options.twoSided)
     for (GpgpVisibilityDraw& draw : model.draws) draw.flags |= GPGP_DRAW_TWO_SIDED;
   Session session(common);
-  Bounds bounds = boundsOf(model);
   if (options.grid.width * options.grid.height > 1) {
     repeatInGrid(model, options.grid.width, options.grid.height, bounds.high - bounds.low,
                  session.device().properties().limits.maxStorageBufferRange);
@@ -338,7 +349,7 @@ Outcome visibility(const VisibilityOptions& options, const CommonOptions& common
   const Figures figures = measure(session, options, cell, model, bounds, corners);
   if (!options.exportIds.empty()) writeIds(options.exportIds, figures.found, model.triangleCount);
   const Progress painting("painting");
-  if (!options.image.empty()) paintSeen(options, corners, viewOf(options, bounds, 0), bounds, figures.first);
+  if (!options.image.empty()) paintSeen(options, corners, viewOf(options, model, bounds, 0), bounds, figures.first);
   session.checkValidation();
   return outcomeOf(options, model, figures, session.device().name());
 }

@@ -8,6 +8,7 @@
 #include "vector/patch/patches.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -130,7 +131,25 @@ uint64_t checksum(std::span<const std::byte> bytes) {
   return hash ^ bytes.size();
 }
 
-std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resource* memory) {
+/// What a file holds behind its header.
+static std::array<std::span<const std::byte>, 14> partsOf(const Drawing& d) {
+  const LayerPlan& plan = d.plan;
+  return {std::as_bytes(std::span(d.curves)),    std::as_bytes(std::span(d.patches)),
+          std::as_bytes(std::span(d.paths)),     std::as_bytes(std::span(d.paints)),
+          std::as_bytes(std::span(d.stops)),     std::as_bytes(std::span(d.clips)),
+          std::as_bytes(std::span(d.layers)),    std::as_bytes(std::span(plan.runs)),
+          std::as_bytes(std::span(plan.tokens)), std::as_bytes(std::span(plan.sequences)),
+          std::as_bytes(std::span(plan.nodes)),  std::as_bytes(std::span(plan.steps)),
+          std::as_bytes(std::span(plan.tables)), std::as_bytes(std::span(d.words))};
+}
+
+size_t bakedSize(const Drawing& drawing) {
+  size_t size = sizeof(Header);
+  for (const auto part : partsOf(drawing)) size += part.size();
+  return size;
+}
+
+void bake(const Drawing& drawing, std::span<std::byte> bytes) {
   Header header{};
   std::memcpy(header.magic, kMagic, sizeof kMagic);
   header.version = kVersion;
@@ -151,18 +170,19 @@ std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resour
   header.tables = static_cast<uint32_t>(plan.tables.size());
   std::memcpy(header.bounds, drawing.bounds, sizeof header.bounds);
   std::memcpy(header.viewport, drawing.viewport, sizeof header.viewport);
-  std::pmr::vector<std::byte> bytes(sizeof header, std::byte{}, memory);
-  for (const auto part : {std::as_bytes(std::span(drawing.curves)), std::as_bytes(std::span(drawing.patches)),
-                          std::as_bytes(std::span(drawing.paths)), std::as_bytes(std::span(drawing.paints)),
-                          std::as_bytes(std::span(drawing.stops)), std::as_bytes(std::span(drawing.clips)),
-                          std::as_bytes(std::span(drawing.layers)), std::as_bytes(std::span(plan.runs)),
-                          std::as_bytes(std::span(plan.tokens)), std::as_bytes(std::span(plan.sequences)),
-                          std::as_bytes(std::span(plan.nodes)), std::as_bytes(std::span(plan.steps)),
-                          std::as_bytes(std::span(plan.tables)), std::as_bytes(std::span(drawing.words))})
-    bytes.insert(bytes.end(), part.begin(), part.end());
+  std::byte* next = bytes.data() + sizeof header;
+  for (const auto part : partsOf(drawing)) {
+    if (!part.empty()) std::memcpy(next, part.data(), part.size());
+    next += part.size();
+  }
   std::memcpy(bytes.data(), &header, sizeof header);
-  header.checksum = checksum(std::span(bytes).subspan(kSummedFrom));
+  header.checksum = checksum(bytes.subspan(kSummedFrom));
   std::memcpy(bytes.data(), &header, sizeof header);
+}
+
+std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resource* memory) {
+  std::pmr::vector<std::byte> bytes(bakedSize(drawing), std::byte{}, memory);
+  bake(drawing, bytes);
   return bytes;
 }
 

@@ -2,6 +2,7 @@
 #include "vector/geometry/order.h"
 #include "vector/patch/drawing.h"
 #include "vector/patch/inversions.h"
+#include "vector/patch/scratch.h"
 
 #include <algorithm>
 #include <array>
@@ -65,20 +66,74 @@ core::Error tooManyPatches() {
   return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing needs more than %u patches", shader::kEntryPatch);
 }
 
-/// Whether the outline of pieces, were each of their crossings a corner of it, would not fit. Cheap where few lie
-/// beside each other.
-bool mayOutgrow(std::span<const Monotone> pieces, const OutlineRoom& room, std::pmr::memory_resource* memory) {
-  constexpr double kMany = 256; // with fewer beside each other, conversion takes no time worth saving
-  if (static_cast<double>(pieces.size()) < kMany) return false;
+// With fewer pieces beside each other, conversion takes no time worth saving.
+constexpr double kMany = 256;
+
+/// Whether many pieces lie beside each other; where they do, how often they cross at least.
+std::optional<size_t> crossingsOfMany(std::span<const Monotone> pieces, std::pmr::memory_resource* memory) {
+  if (static_cast<double>(pieces.size()) < kMany) return {};
   double top = pieces[0].top(), bottom = pieces[0].bottom(), heights = 0;
   for (const Monotone& piece : pieces) {
     top = std::min(top, piece.top());
     bottom = std::max(bottom, piece.bottom());
     heights += piece.bottom() - piece.top();
   }
-  if (!(heights > kMany * (bottom - top))) return false;
-  const size_t crossings = leastCrossings(pieces, top, bottom, 32, kMaxCrossings, memory);
-  return crossings <= kMaxCrossings && !room.has(2 * uint64_t(crossings)); // more are refused anyway, by themselves
+  if (!(heights > kMany * (bottom - top))) return {};
+  return leastCrossings(pieces, top, bottom, 32, kMaxCrossings, memory);
+}
+
+/// Whether the outline of pieces, were each of their crossings a corner of it, would not fit.
+bool mayOutgrow(std::span<const Monotone> pieces, const OutlineRoom& room, std::pmr::memory_resource* memory) {
+  const auto crossings = crossingsOfMany(pieces, memory);
+  // More are refused anyway, by themselves.
+  return crossings && *crossings <= kMaxCrossings && !room.has(2 * uint64_t(*crossings));
+}
+
+/// Whether a path's lines and controls pass its rows so often that many pieces may lie beside each other.
+bool maybeTangled(const GpgpPath& path) {
+  if (path.stroke || path.verbCount < kMany || !path.points || !path.pointCount) return false;
+  float low = path.points[1], high = low;
+  double heights = 0;
+  for (uint64_t i = 1; i < path.pointCount; ++i) {
+    const float y = path.points[2 * i + 1];
+    low = std::min(low, y), high = std::max(high, y);
+    heights += static_cast<double>(std::abs(y - path.points[2 * i - 1]));
+  }
+  return heights > kMany * (static_cast<double>(high) - static_cast<double>(low));
+}
+
+/// The first of several tangled paths with which they outgrow the room together, as far as that is known without
+/// converting them. Takes less than a tenth of the time that converting them takes.
+std::optional<size_t> firstTooMany(std::span<const GpgpPath> paths, const OutlineRoom& room,
+                                   std::pmr::memory_resource* heap) {
+  std::pmr::vector<size_t> tangled(heap);
+  for (size_t i = 0; i < paths.size(); ++i)
+    if (maybeTangled(paths[i])) tangled.push_back(i);
+  if (tangled.size() < 2) return {};
+  /// Calls work(pieces, rule, memory) for each of them until it says that this is enough.
+  const auto find = [&](auto&& work) -> std::optional<size_t> {
+    for (const size_t i : tangled) {
+      Scratch scratch(heap);
+      std::pmr::vector<Monotone> pieces(&scratch);
+      if (!outline(paths[i], pieces)) return {}; // an error; conversion says which
+      mergeCoincident(pieces);
+      if (work(pieces, paths[i].fillRule, &scratch)) return i;
+    }
+    return {};
+  };
+  uint64_t corners = 0; // at most
+  if (!find([&](const auto& pieces, GpgpFillRule, auto* memory) {
+        const size_t crossings = crossingsOfMany(pieces, memory).value_or(0);
+        if (crossings <= kMaxCrossings) corners += 2 * uint64_t(crossings);
+        return !room.has(corners);
+      }))
+    return {};
+  const uint64_t places = std::min(kMostPlaces, 8 * kMostPlaces / tangled.size());
+  uint64_t segments = 0;
+  return find([&](const auto& pieces, GpgpFillRule rule, auto* memory) {
+    segments += leastSegments(pieces, rule, room.left(), memory, places);
+    return !room.has(segments);
+  });
 }
 
 } // namespace
@@ -91,22 +146,22 @@ void addInk(const PatchRecord& patch, bool first, float (&bounds)[4]) {
 
 core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, OutlineRoom& room,
                            std::optional<core::Error>* tooMany) {
-  // What the stages leave to each other goes at once; small paths find room here.
-  alignas(std::max_align_t) std::byte nearby[32 << 10];
-  std::pmr::monotonic_buffer_resource scratch(nearby, sizeof nearby, drawing.curves.get_allocator().resource());
+  Scratch scratch(drawing.curves.get_allocator().resource());
   std::pmr::memory_resource* memory = &scratch;
   std::pmr::vector<Monotone> pieces(memory);
   pieces.reserve(path.verbCount + path.verbCount / 2);
   std::pmr::vector<Ellipse> ellipses(memory);
   if (auto ok = outline(path, pieces, &ellipses); !ok) return ok;
   mergeCoincident(pieces);
-  std::pmr::vector<Cut> cuts(memory);
   std::pmr::vector<Slab> slabs(memory);
   const GpgpFillRule rule = path.stroke ? GPGP_FILL_NON_ZERO : path.fillRule;
   if (mayOutgrow(pieces, room, memory) && !room.has(leastSegments(pieces, rule, room.left(), memory)))
     return room.error();
-  auto swept = findCrossings(pieces, cuts);
-  if (swept) swept = sweep(pieces, cuts, rule, slabs);
+  const auto swept = [&]() -> core::Result<void> {
+    std::pmr::vector<Cut> cuts(memory);
+    if (auto ok = findCrossings(pieces, cuts); !ok) return ok;
+    return sweep(pieces, cuts, rule, slabs);
+  }();
   if (!swept) {
     if (!tooMany) return swept;
     *tooMany = swept.error();
@@ -226,6 +281,12 @@ core::Result<void> append(const Drawing& part, Drawing& drawing) {
 
 namespace {
 
+/// The error of a path.
+core::Error refused(size_t path, const core::Error& error, std::pmr::vector<LeftEmpty>* leftEmpty) {
+  if (leftEmpty) leftEmpty->push_back({0, path, error, true});
+  return core::makeError(error.code, "paths[%zu]: %s", path, error.text);
+}
+
 core::Result<Drawing> convert(std::span<const GpgpPath> paths, size_t first, OutlineRoom& room,
                               std::pmr::memory_resource* memory, std::pmr::vector<LeftEmpty>* leftEmpty) {
   Drawing drawing(memory);
@@ -235,10 +296,10 @@ core::Result<Drawing> convert(std::span<const GpgpPath> paths, size_t first, Out
   drawing.curves.reserve(verbs + verbs / 4); // what most need, so that little is copied while they grow
   drawing.patches.reserve(verbs + verbs / 4);
   for (size_t i = 0; i < paths.size(); ++i) {
-    if (!room.has(0)) return room.error(); // others have taken it
+    if (!room.has(0)) return refused(first + i, room.error(), leftEmpty); // others have taken it
     std::optional<core::Error> tooMany;
     if (auto ok = addPath(paths[i], drawing, room, leftEmpty ? &tooMany : nullptr); !ok)
-      return core::makeError(ok.error().code, "paths[%zu]: %s", first + i, ok.error().text);
+      return refused(first + i, ok.error(), leftEmpty);
     if (tooMany) leftEmpty->push_back({0, first + i, *tooMany});
   }
   return drawing;
@@ -271,6 +332,7 @@ core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::mem
                                   OutlineRoom* given) {
   OutlineRoom own;
   OutlineRoom& room = given ? *given : own;
+  if (const auto tooMany = firstTooMany(paths, room, memory)) return refused(first + *tooMany, room.error(), leftEmpty);
   constexpr uint64_t kVerbsOfBatch = 1000; // some tenths of a millisecond
   core::Result<Drawing> drawing = Drawing(memory);
   std::pmr::vector<Batch> batches(memory);
@@ -296,9 +358,9 @@ core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::mem
     jobs->parallelFor(jobs->userData, static_cast<uint32_t>(batches.size()), Batch::run, batches.data());
     for (const Batch& batch : batches) {
       if (!batch.made) throw std::bad_alloc();
+      if (leftEmpty) leftEmpty->insert(leftEmpty->end(), batch.leftEmpty.begin(), batch.leftEmpty.end());
       if (!*batch.made) return batch.made->error();
       if (auto ok = append(**batch.made, *drawing); !ok) return ok.error();
-      if (leftEmpty) leftEmpty->insert(leftEmpty->end(), batch.leftEmpty.begin(), batch.leftEmpty.end());
     }
   } else {
     drawing = convert(paths, first, room, memory, leftEmpty);

@@ -310,7 +310,7 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
       if (crossings > kMaxCrossings / 2) crossings = leastCrossings(pieces, top, bottom, 256, kMaxCrossings, memory);
       if (crossings > kMaxCrossings) return tooMuch();
       cuts.clear();
-      cuts.reserve(crossings * 9 / 4); // two each; strips tell most
+      cuts.reserve(crossings * 5 / 2); // two each; strips tell most
       crossings = work = 0;
       if (!Strips(pieces, memory, compareParts).run(top, bottom)) return tooMuch();
       break;

@@ -107,10 +107,11 @@ void addInk(const PatchRecord& patch, bool first, float (&bounds)[4]);
 /// Paints another drawing on top: how paths that were converted apart, or earlier, become one.
 core::Result<void> append(const Drawing& part, Drawing& drawing);
 
-/// A path that was left empty as it crosses itself too often.
+/// A path that was left empty as it crosses itself too often, or that the drawing was refused for.
 struct LeftEmpty {
   size_t group, index; ///< 0: of the paths; else 1 + a group's index, of its clip
-  core::Error error;
+  core::Error error;   ///< does not say which path
+  bool refused = false;
 };
 
 /// The same with groups: their clips' paths come first, and paths know their clip and layer. Errors name the group.
@@ -122,7 +123,7 @@ core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::span<con
 
 /// The drawing of paths in painting order; the same with and without jobs, which then call the memory resource side by
 /// side. Errors name the path, `first` being the first one; with `leftEmpty`, paths that cross themselves too often go
-/// there instead.
+/// there instead, and the path of an error does as well, as the last one.
 core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::memory_resource* memory,
                                   const GpgpJobSystem* jobs = nullptr, std::pmr::vector<LeftEmpty>* leftEmpty = nullptr,
                                   size_t first = 0, OutlineRoom* room = nullptr);
@@ -144,7 +145,9 @@ inline GpgpDrawingMethods methodsOf(const Drawing& drawing) {
   if (drawing.words.empty()) return GPGP_DRAWING_FLATTENED;
   return drawing.patches.empty() ? GPGP_DRAWING_IN_PASS : GPGP_DRAWING_FLATTENED | GPGP_DRAWING_IN_PASS;
 }
-/// Baked form: little-endian, versioned, checksummed.
+/// Baked form: little-endian, versioned, checksummed. Into bakedSize() bytes, or into a table of its own.
+size_t bakedSize(const Drawing& drawing);
+void bake(const Drawing& drawing, std::span<std::byte> bytes);
 std::pmr::vector<std::byte> bake(const Drawing& drawing, std::pmr::memory_resource* memory);
 /// Checks everything that a shader would trust: sizes, indices, finite numbers, order. Errors: INVALID_DATA.
 core::Result<Drawing> loadBaked(std::span<const std::byte> bytes, std::pmr::memory_resource* memory);

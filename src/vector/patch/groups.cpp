@@ -230,8 +230,10 @@ private:
     path.gradient = nullptr;
     path.image = nullptr;
     std::optional<core::Error> tooMany;
-    if (auto ok = addPath(path, drawing_, room_, leftEmpty_ ? &tooMany : nullptr); !ok)
+    if (auto ok = addPath(path, drawing_, room_, leftEmpty_ ? &tooMany : nullptr); !ok) {
+      if (leftEmpty_) leftEmpty_->push_back({1 + group, k, ok.error(), true});
       return makeError(ok.error().code, "groups[%u].clip[%u]: %s", group, k, ok.error().text);
+    }
     if (tooMany) leftEmpty_->push_back({1 + group, k, *tooMany});
     return {};
   }

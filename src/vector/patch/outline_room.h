@@ -46,17 +46,33 @@ private:
   std::atomic<uint64_t> taken_{0};
 };
 
+/// Sorts what is most often nearly in order, as pieces are from one row to the next.
+template <class Values, class Less> void sortNearly(Values& values, Less&& less) {
+  size_t moves = 16 * values.size(); // beyond that it is not
+  for (size_t i = 1; i < values.size(); ++i) {
+    const auto value = values[i];
+    size_t at = i;
+    for (; at > 0 && less(value, values[at - 1]); --at) values[at] = values[at - 1];
+    values[at] = value;
+    if (i - at > moves) return std::sort(values.begin(), values.end(), less);
+    moves -= i - at;
+  }
+}
+
 /// No more than how many segments the outline of the pieces' region has, without looking for crossings: a piece has one
 /// for each time that it begins to bound the region, or to bound it on its other side, from one row of many to the
-/// next. Rows are as many as take some tenths of a second at most. Ends early beyond `limit`.
+/// next. Rows are as many as look at `places` of pieces; the default takes a tenth of a second or two. Ends early
+/// beyond `limit`.
+constexpr uint64_t kMostPlaces = 1 << 23;
 inline uint64_t leastSegments(std::span<const Monotone> pieces, GpgpFillRule rule, uint64_t limit,
-                              std::pmr::memory_resource* memory) {
+                              std::pmr::memory_resource* memory, uint64_t places = kMostPlaces) {
   struct Active {
-    uint32_t piece;
+    const Monotone* piece;
+    double x, step, bottom; ///< step: of a line, to the next row
+    int winding;
+    bool line;
     int8_t side; ///< of the piece that lies inside, in the row above; 0: both or none
-    double x;
   };
-  constexpr double kMostPlaces = 1 << 23; ///< looked at
   constexpr double kMostRows = 1 << 14;
   double top = INFINITY, bottom = -INFINITY, heights = 0;
   for (const Monotone& piece : pieces) {
@@ -65,8 +81,8 @@ inline uint64_t leastSegments(std::span<const Monotone> pieces, GpgpFillRule rul
     heights += piece.bottom() - piece.top();
   }
   if (!(bottom > top)) return 0;
-  const uint32_t rows =
-      static_cast<uint32_t>(std::clamp(kMostPlaces / std::max(heights / (bottom - top), 1.0), 1.0, kMostRows));
+  const double beside = std::max(heights / (bottom - top), 1.0); // pieces in a row
+  const uint32_t rows = static_cast<uint32_t>(std::clamp(static_cast<double>(places) / beside, 1.0, kMostRows));
   std::pmr::vector<uint32_t> order(pieces.size(), 0, memory);
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return pieces[a].top() < pieces[b].top(); });
@@ -75,18 +91,23 @@ inline uint64_t leastSegments(std::span<const Monotone> pieces, GpgpFillRule rul
   uint64_t segments = 0;
   for (uint32_t i = 0; i < rows && segments <= limit; ++i) {
     const double y = top + (bottom - top) * (i + 0.5) / rows;
-    std::erase_if(active, [&](const Active& a) { return pieces[a.piece].bottom() <= y; });
-    for (; next < order.size() && pieces[order[next]].top() <= y; ++next)
-      if (pieces[order[next]].bottom() > y) active.push_back({order[next], 0, 0});
-    for (Active& a : active) a.x = pieces[a.piece].xAt(y);
-    std::sort(active.begin(), active.end(), [](const Active& l, const Active& r) { return l.x < r.x; });
+    std::erase_if(active, [&](const Active& a) { return a.bottom <= y; });
+    for (Active& a : active) a.x = a.line ? a.x + a.step : a.piece->xAt(y);
+    for (; next < order.size() && pieces[order[next]].top() <= y; ++next) {
+      const Monotone& piece = pieces[order[next]];
+      const Point* p = piece.curve.p;
+      if (!(piece.bottom() > y)) continue;
+      const double step = (p[3].x - p[0].x) / (p[3].y - p[0].y) * ((bottom - top) / rows);
+      active.push_back({&piece, piece.xAt(y), step, piece.bottom(), piece.winding, piece.curve.line, 0});
+    }
+    sortNearly(active, [](const Active& l, const Active& r) { return l.x < r.x; });
     // Which of two that are as good as one comes first is not known: neither counts.
     const auto same = [](double a, double b) { return b - a <= 1e-6 * (std::abs(a) + std::abs(b)); };
     const auto inside = [rule](int winding) { return rule == GPGP_FILL_EVEN_ODD ? winding % 2 != 0 : winding != 0; };
     int winding = 0;
     for (size_t k = 0; k < active.size(); ++k) {
       const bool before = inside(winding);
-      winding += pieces[active[k].piece].winding;
+      winding += active[k].winding;
       const auto side = static_cast<int8_t>(inside(winding) - before);
       if ((k > 0 && same(active[k - 1].x, active[k].x)) ||
           (k + 1 < active.size() && same(active[k].x, active[k + 1].x)))

@@ -144,9 +144,9 @@ GpgpResult GPGP_CALL gpgpCompileLottieFrame(GpgpLottie handle, double frame, con
     const float page[4] = {0, 0, static_cast<float>(lottie->animation.width),
                            static_cast<float>(lottie->animation.height)};
     std::copy_n(page, 4, drawing->viewport);
-    const auto bytes = vector::bake(*drawing, memory);
-    const GpgpBlob made = core::copyToBlob(std::as_bytes(std::span(bytes)));
+    const GpgpBlob made = core::newBlob(vector::bakedSize(*drawing));
     if (!made.data) return makeError(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
+    vector::bake(*drawing, core::bytesOf(made));
     *blob = made;
     return {};
   });

@@ -41,11 +41,13 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
   auto drawing = vector::makeDrawing(paths, views.groups, memory, source.jobSystem, &leftEmpty,
                                      source.methods == GPGP_DRAWING_IN_PASS ? UINT64_MAX : outlines);
   const auto converted = Clock::now();
-  if (!drawing) return fail(drawing.error().code, drawing.error().text);
   for (const vector::LeftEmpty& left : leftEmpty) {
     const auto& path = (left.group ? imported->groups[left.group - 1].clip : imported->paths)[left.index];
-    reporter.error(path.place, path.element + ": " + left.error.text + "; not drawn", GPGP_ERROR_UNSUPPORTED);
+    reporter.error(path.place, path.element + ": " + left.error.text + (left.refused ? "" : "; not drawn"),
+                   left.error.code);
+    if (left.refused) return left.error.code;
   }
+  if (!drawing) return fail(drawing.error().code, drawing.error().text);
   if (imported->width > 0 && imported->height > 0) {
     const double page[4] = {0, 0, imported->width, imported->height};
     for (size_t i = 0; i < 4; ++i) drawing->viewport[i] = static_cast<float>(page[i]);
@@ -64,9 +66,9 @@ GpgpResult compile(const GpgpSvgSource& source, GpgpBlob& blob, Reporter& report
   }
   vector::Drawing kept = source.stageFn ? vector::Drawing(*drawing) : std::move(*drawing); // stages show all of it
   if (source.methods == GPGP_DRAWING_IN_PASS) kept.curves.clear(), kept.patches.clear();
-  const auto bytes = vector::bake(kept, memory);
-  const GpgpBlob made = core::copyToBlob(std::as_bytes(std::span(bytes)));
+  const GpgpBlob made = core::newBlob(vector::bakedSize(kept));
   if (!made.data) return fail(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of memory");
+  vector::bake(kept, core::bytesOf(made));
   blob = made;
   if (source.report)
     *source.report = {counts.paths, counts.curves, counts.patches,
