@@ -35,6 +35,7 @@ typedef struct GpgpSvgTextSpan {
   float weight;         /**< 1 to 1000; 400 is regular */
   float letterSpacing;  /**< units after each grapheme */
   VkBool32 italic, smallCaps, unkerned; /**< unkerned: kerning is off */
+  VkBool32 unligated;                   /**< optional ligatures are off */
 } GpgpSvgTextSpan;
 
 /** A line of an SVG's text. Spans cover it without gaps, in order. */
@@ -57,7 +58,8 @@ typedef struct GpgpSvgGlyph {
   const VkBool32* foreground; /**< one for each path; VK_TRUE: painted as the SVG says. NULL: all are */
   /** Of the glyph's font, in em, as in GpgpFontInfo. */
   float ascent, descent, xHeight, underlinePosition, underlineThickness, strikePosition, strikeThickness;
-  VkBool32 incomplete; /**< VK_TRUE: a part of the glyph, such as an image, is not among the paths */
+  float subscript, superscript; /**< how far they lie below and above the baseline */
+  VkBool32 incomplete;          /**< VK_TRUE: a part of the glyph, such as an image, is not among the paths */
 } GpgpSvgGlyph;
 typedef void(GPGP_CALL* GpgpSvgGlyphFn)(void* glyphUserData, const GpgpSvgGlyph* glyph);
 /** Shapes a line, and calls glyphFn for each of its glyphs from left to right. Any other result than SUCCESS leaves

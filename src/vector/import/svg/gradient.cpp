@@ -159,6 +159,8 @@ std::shared_ptr<const Gradient> Importer::gradientOf(const GradientChain& chain,
     g.end[0] = number("x2", LengthAxis::X, 100);
     g.end[1] = number("y2", LengthAxis::Y, 0);
   }
+  if (radial && g.startRadius == g.endRadius && g.start[0] == g.end[0] && g.start[1] == g.end[1])
+    g.endRadius *= 1.0001f; // the first colour inside, the last around it
   const std::string_view spread = trim(text("spreadMethod"));
   g.spread = spread == "reflect" ? GPGP_SPREAD_REFLECT : spread == "repeat" ? GPGP_SPREAD_REPEAT : GPGP_SPREAD_PAD;
   g.interpolateSrgb = !styleOf(node, state.lengths).mixesLinear;

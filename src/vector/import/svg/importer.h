@@ -144,6 +144,8 @@ private:
   // clip.cpp
   /// Puts what the element refers to around it; says so where that cannot be.
   void clip(pugi::xml_node node, std::string_view name, State& state, const Frame* of);
+  /// Whether a clipPath inside of one that is being shown leads back to that. `seen`: those that were looked at.
+  bool refersBack(pugi::xml_node clipPath, const LengthContext& lengths, std::vector<pugi::xml_node>& seen);
   /// Of an element that others refer to: what it has from where it stands, not from them.
   Style styleOf(pugi::xml_node node, const LengthContext& lengths);
   /// Of all shapes inside, strokes and clips aside, in coordinates given by their transform to the page.
