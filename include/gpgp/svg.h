@@ -59,7 +59,12 @@ typedef struct GpgpSvgGlyph {
   /** Of the glyph's font, in em, as in GpgpFontInfo. */
   float ascent, descent, xHeight, underlinePosition, underlineThickness, strikePosition, strikeThickness;
   float subscript, superscript; /**< how far they lie below and above the baseline */
-  VkBool32 incomplete;          /**< VK_TRUE: a part of the glyph, such as an image, is not among the paths */
+  VkBool32 incomplete;          /**< VK_TRUE: a part of the glyph is neither among the paths nor the image */
+  /** A bitmap glyph's image, which goes to GpgpSvgSource::imageFn as a PNG file; NULL: it has none. RGBA, 8 bits each,
+   *  sRGB, straight alpha; rows from the top, without gaps. */
+  const uint8_t* image;
+  uint32_t imageWidth, imageHeight;
+  float imageBox[4]; /**< where it lies: left, top, right, bottom in em, +Y down */
 } GpgpSvgGlyph;
 typedef void(GPGP_CALL* GpgpSvgGlyphFn)(void* glyphUserData, const GpgpSvgGlyph* glyph);
 /** Shapes a line, and calls glyphFn for each of its glyphs from left to right. Any other result than SUCCESS leaves

@@ -1,6 +1,8 @@
 // Where letters of SVG's text stand, and the lines along them, beside the same squares written as shapes.
 #include "svg_squares.h"
 
+#include "host/picture.h"
+
 #include <gtest/gtest.h>
 
 namespace {
@@ -84,6 +86,91 @@ TEST(SvgText, LinesBeginAnewWhereALetterIsPlaced) {
        onSide(34, 10) + onSide(34, 20) + box(29, 10, 2, 20) + box(49, 10, 2, 20) + box(39, 10, 2, 20)},
   };
   for (const Pair& pair : pairs) expectSame(pair);
+}
+
+/// Two letters that are pictures, each of one pixel of its own, and one that is a gradient from its left to its right.
+GpgpResult GPGP_CALL shapePictures(void*, const GpgpSvgText* text, GpgpSvgGlyphFn glyphFn, void* glyphData) {
+  static const uint8_t pixels[2][8] = {{255, 0, 0, 255, 0, 0, 255, 128}, {0, 255, 0, 255, 0, 0, 0, 0}};
+  static const GpgpPathVerb verbs[] = {GPGP_PATH_MOVE, GPGP_PATH_LINE, GPGP_PATH_LINE, GPGP_PATH_CLOSE};
+  static const float points[] = {0, 0, 1, 0, 1, -1};
+  static const GpgpGradientStop stops[] = {{0, {1, 0, 0, 1}}, {1, {0, 0, 1, 1}}};
+  static const VkBool32 isForeground = VK_FALSE;
+  GpgpGradient gradient{};
+  gradient.kind = GPGP_GRADIENT_LINEAR;
+  gradient.end[0] = 1;
+  gradient.transform[0] = gradient.transform[3] = 1;
+  gradient.stops = stops, gradient.stopCount = 2;
+  GpgpPath triangle{};
+  triangle.verbs = verbs, triangle.verbCount = 4;
+  triangle.points = points, triangle.pointCount = 3;
+  triangle.gradient = &gradient;
+  for (uint32_t i = 0; i < text->size; ++i) {
+    GpgpSvgGlyph glyph{};
+    glyph.cluster = i;
+    glyph.size = glyph.advance = text->spans[0].size;
+    glyph.x = static_cast<float>(i) * glyph.size;
+    if (text->text[i] == 'g') {
+      glyph.paths = &triangle, glyph.pathCount = 1, glyph.foreground = &isForeground;
+    } else {
+      glyph.image = pixels[text->text[i] - 'a'];
+      glyph.imageWidth = 2, glyph.imageHeight = 1;
+      const float box[4] = {0.25f, -0.5f, 1.25f, 0};
+      std::copy_n(box, 4, glyph.imageBox);
+    }
+    glyphFn(glyphData, &glyph);
+  }
+  return GPGP_SUCCESS;
+}
+
+TEST(SvgText, GlyphsMayBePicturesAndHaveGradients) {
+  using namespace gpgp;
+  std::vector<host::Picture> pictures;
+  const auto decode = [](void* user, uint32_t index, const void* data, size_t size, uint32_t* width,
+                         uint32_t* height) -> VkBool32 {
+    auto& all = *static_cast<std::vector<host::Picture>*>(user);
+    EXPECT_EQ(index, all.size());
+    all.push_back(host::decodePicture({static_cast<const uint8_t*>(data), size}));
+    *width = all.back().width, *height = all.back().height;
+    return VK_TRUE;
+  };
+  const auto drawn = [&](const std::string& inside, bool hasDecoder, std::vector<std::string>& said) {
+    const std::string text = "<svg xmlns='http://www.w3.org/2000/svg' width='100' height='100'>" + inside + "</svg>";
+    const auto listen = [](void* user, const GpgpMessage* m) {
+      static_cast<std::vector<std::string>*>(user)->push_back(placed(*m));
+    };
+    vector::svg::Reporter reporter(listen, &said, "test.svg");
+    vector::svg::ImageDecoder images;
+    if (hasDecoder) images = {decode, &pictures};
+    auto made = vector::svg::importSvg(std::as_bytes(std::span(text.data(), text.size())), reporter, {}, images, {},
+                                       nullptr, {shapePictures, nullptr});
+    EXPECT_TRUE(made);
+    return std::move(made->paths);
+  };
+  std::vector<std::string> said;
+  const std::string text = "<text x='10' y='40' font-size='20' opacity='.5' fill='red'>abag</text>";
+  const auto paths = drawn(text, true, said);
+  EXPECT_EQ(said, std::vector<std::string>());
+  ASSERT_EQ(paths.size(), 4u);
+  ASSERT_EQ(pictures.size(), 2u); // what is the same is passed once
+  EXPECT_EQ(pictures[0].rgba, (std::vector<uint8_t>{255, 0, 0, 255, 0, 0, 255, 128}));
+  EXPECT_EQ(pictures[1].rgba[1], 255);
+  for (size_t i = 0; i < 3; ++i) {
+    ASSERT_TRUE(paths[i].image);
+    EXPECT_EQ(paths[i].image->image, i == 1 ? 1u : 0u);
+    const float left = 15 + 20 * static_cast<float>(i);
+    const float expected[6] = {20, 0, 0, 10, left, 30};
+    for (size_t k = 0; k < 6; ++k) EXPECT_NEAR(paths[i].image->transform[k], expected[k], 1e-4f) << i << ' ' << k;
+    EXPECT_EQ(paths[i].points, (std::vector<float>{left, 30, left + 20, 30, left + 20, 40, left, 40}));
+  }
+  ASSERT_TRUE(paths[3].gradient);
+  const float expected[6] = {20, 0, 0, 20, 70, 40};
+  for (size_t k = 0; k < 6; ++k) EXPECT_NEAR(paths[3].gradient->gradient.transform[k], expected[k], 1e-4f) << k;
+  ASSERT_EQ(paths[3].gradient->gradient.stopCount, 2u);
+  EXPECT_EQ(paths[3].gradient->gradient.stops[1].color[2], 1);
+  // Without anyone who decodes them they are named.
+  EXPECT_EQ(drawn("<text font-size='20'>a</text>", false, said).size(), 0u);
+  EXPECT_EQ(said,
+            std::vector<std::string>{"test.svg:1:66: warning: <text> has glyphs with parts that are not supported"});
 }
 
 } // namespace

@@ -251,7 +251,12 @@ void SvgText::shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyph
         out.paths = outline.paths;
         out.pathCount = outline.pathCount;
         out.foreground = outline.foreground;
-        out.incomplete = outline.incomplete || outline.image;
+        out.incomplete = outline.incomplete;
+        if (outline.image) {
+          out.image = outline.image->pixels;
+          out.imageWidth = outline.image->width, out.imageHeight = outline.image->height;
+          std::copy_n(outline.image->box, 4, out.imageBox);
+        }
         glyphFn(glyphData, &out);
       }));
     }

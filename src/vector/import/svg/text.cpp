@@ -1,6 +1,6 @@
 // Text (SVG 2, chapter 11) as outlines: characters with their places, lines that whoever compiles shapes in fonts, and
 // glyphs as the shapes of the element that they stand in.
-#include "vector/import/svg/importer.h"
+#include "vector/import/svg/text.h"
 #include "vector/import/svg/text_characters.h"
 #include "vector/import/svg/track.h"
 
@@ -40,69 +40,7 @@ Shape shapeOfGlyph(const GpgpPath& path) {
   return shape;
 }
 
-void append(Shape& to, const Shape& from, const Affine& map) {
-  to.verbs.insert(to.verbs.end(), from.verbs.begin(), from.verbs.end());
-  for (const Point& p : from.points) to.points.push_back(map(p));
-}
-
 } // namespace
-
-struct Importer::Text {
-  struct Decoration {
-    std::string kinds; ///< of text-decoration
-    size_t run;        ///< whose paints it has
-  };
-  struct Run { // an element's own characters
-    State state;
-    pugi::xml_node node;
-    std::string language;
-    double shift = 0;                     ///< of its baseline, up
-    int superscripts = 0, subscripts = 0; ///< elements around that shift it by what their fonts say
-    size_t track = 0;                     ///< 1 + index
-    std::vector<Decoration> decorations;
-  };
-  struct Element { // with what it says of its characters
-    pugi::xml_node node;
-    State state;
-    size_t first = 0, last = 0; ///< its characters
-  };
-  struct Character {
-    size_t begin = 0;  ///< of the marks of direction before it
-    size_t offset = 0; ///< its own first byte
-    size_t run = 0;
-    std::optional<double> x, y;
-    double dx = 0, dy = 0, rotate = 0;
-  };
-  struct Part { // of a glyph
-    Shape shape;
-    bool isForeground = true;
-    Color color;
-  };
-  struct Glyph {
-    size_t character = 0;
-    Affine map; ///< from em
-    Point at;   ///< where it begins on its baseline
-    double advance = 0, angle = 0, size = 0;
-    Point line; ///< where its piece of a decoration begins: on its baseline, of vertical lines in their middle
-    double lineAngle = 0;
-    bool hidden = false; ///< beyond a track's ends
-    bool apart = false;  ///< its character is placed by itself: decorations begin anew
-    GpgpSvgGlyph metrics{};
-    std::vector<Part> parts;
-  };
-  pugi::xml_node node;
-  std::string bytes;
-  std::string marks; ///< of direction, before the next character
-  std::vector<Run> runs;
-  std::vector<Element> elements;
-  std::vector<Character> characters;
-  std::vector<Track> tracks;
-  std::vector<Glyph> glyphs;
-  Box box; ///< of all glyphs' cells
-  bool afterSpace = true, vertical = false;
-  Point at;         ///< the current text position
-  double along = 0; ///< the same on a path, from where its text begins
-};
 
 /// Appends what an element holds, and what is in it.
 void Importer::collectText(pugi::xml_node node, const State& state, bool preserves, Text& text) {
@@ -299,10 +237,10 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
   const GpgpSvgText line{text.bytes.data() + from, static_cast<uint32_t>(to - from), spans.data(),
                          static_cast<uint32_t>(spans.size()), style.rightToLeft};
   struct Taken {
+    Importer& importer;
     std::vector<Text::Glyph> glyphs;
-    std::vector<GpgpSvgGlyph> given;
     bool incomplete = false;
-  } taken;
+  } taken{*this, {}, false};
   const GpgpResult result = text_.fn(
       text_.userData, &line,
       [](void* user, const GpgpSvgGlyph* glyph) {
@@ -310,16 +248,27 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
         Text::Glyph made;
         for (uint32_t i = 0; i < glyph->pathCount; ++i) {
           const GpgpPath& path = glyph->paths[i];
-          Text::Part part{shapeOfGlyph(path), !glyph->foreground || glyph->foreground[i], {}};
-          into.incomplete |= !part.isForeground && path.gradient;
+          Text::Part part;
+          part.shape = shapeOfGlyph(path);
+          part.isForeground = !glyph->foreground || glyph->foreground[i];
+          if (!part.isForeground && path.gradient) part.gradient = gradientMoved(*path.gradient, Affine{});
           const auto encoded = [](float v) { return srgbFromLinear(static_cast<double>(v)); };
           part.color = {encoded(path.color[0]), encoded(path.color[1]), encoded(path.color[2]),
                         static_cast<double>(path.color[3])};
           made.parts.push_back(std::move(part));
         }
         into.incomplete |= glyph->incomplete != 0;
+        if (glyph->image) {
+          const auto at = [glyph](size_t i) { return static_cast<double>(glyph->imageBox[i]); };
+          Text::Part part;
+          part.isForeground = false;
+          part.picture = into.importer.pictureOfGlyph(*glyph);
+          part.place = {at(2) - at(0), 0, 0, at(3) - at(1), at(0), at(1)};
+          into.incomplete |= !part.picture;
+          if (part.picture) made.parts.push_back(std::move(part));
+        }
         made.metrics = *glyph;
-        made.metrics.paths = nullptr, made.metrics.foreground = nullptr;
+        made.metrics.paths = nullptr, made.metrics.foreground = nullptr, made.metrics.image = nullptr;
         into.glyphs.push_back(std::move(made));
       },
       &taken);
@@ -468,82 +417,6 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     text.at = text.at + Point{-down, lead + (style.rightToLeft ? -1 : 1) * (1 - style.anchor) * width};
   else
     text.at = text.at + Point{lead + (style.rightToLeft ? -1 : 1) * (1 - style.anchor) * width, down};
-}
-
-/// Runs in painting order: lines below, glyphs, lines through.
-void Importer::paintText(Text& text) {
-  const auto paint = [&](const Text::Run& run, const Shape& shape, const std::optional<Color>& own) {
-    const State& state = run.state;
-    const Style& style = state.style;
-    if (shape.empty() || !style.visible || !(state.opacity > 0)) return;
-    group_ = state.group;
-    if (mode_ == Mode::Clip) return emit(shape, state.transform, style.clipRule, {}, 1, run.node);
-    if (own)
-      return emit(shape, state.transform, GPGP_FILL_NON_ZERO, {*own, nullptr}, style.fillOpacity * state.opacity,
-                  run.node);
-    const Surface surface{state, state.transform, [&text] { return text.box; }};
-    for (const Style::Part part : style.paintOrder) {
-      group_ = state.group;
-      if (part == Style::Part::Fill) {
-        if (const auto ink = resolve(style.fill, surface, run.node, "fill"))
-          emit(shape, state.transform, GPGP_FILL_NON_ZERO, *ink, style.fillOpacity * state.opacity, run.node);
-      } else if (part == Style::Part::Stroke && style.strokeWidth > 0) {
-        if (const auto ink = resolve(style.stroke, surface, run.node, "stroke")) stroke(shape, state, *ink, run.node);
-      }
-    }
-  };
-  for (size_t begin = 0, end = 0; begin < text.glyphs.size() && !stopped_; begin = end) {
-    const size_t of = text.characters[text.glyphs[begin].character].run;
-    const Text::Run& run = text.runs[of];
-    while (end < text.glyphs.size() && text.characters[text.glyphs[end].character].run == of) ++end;
-    const auto decorate = [&](bool through) {
-      for (const Text::Decoration& d : run.decorations)
-        for (const std::string_view kind : {"underline", "overline", "line-through"}) {
-          if ((kind == "line-through") != through || d.kinds.find(kind) == std::string::npos) continue;
-          Shape lines;
-          for (size_t i = begin, next = begin; i < end; i = next) { // glyphs on one straight line have one
-            const Text::Glyph& g = text.glyphs[i];
-            const double c = std::cos(g.lineAngle), s = std::sin(g.lineAngle);
-            double width = g.advance;
-            for (next = i + 1; next < end && !run.track && !text.glyphs[next].apart; ++next) {
-              const Text::Glyph& other = text.glyphs[next];
-              const Point way{other.line.x - g.line.x, other.line.y - g.line.y};
-              const bool isTurned = std::fabs(other.lineAngle - g.lineAngle) > 1e-9;
-              if (isTurned || std::fabs(c * way.y - s * way.x) > 1e-6) break;
-              width = std::max(width, c * way.x + s * way.y + other.advance);
-            }
-            if (g.hidden || !(width > 0)) continue;
-            const GpgpSvgGlyph& m = g.metrics;
-            const double thick = static_cast<double>(through ? m.strikeThickness : m.underlineThickness);
-            // Other renderers take the positions for those of the middle of the line, which fonts give of its top.
-            double y = static_cast<double>(through               ? m.strikePosition
-                                           : kind == "underline" ? m.underlinePosition
-                                                                 : -m.ascent) -
-                       (kind == "overline" ? 0 : thick / 2);
-            if (text.vertical && !run.track) { // through the middle, and along both edges
-              const double half = static_cast<double>(m.ascent + m.descent) / 2;
-              y = through ? 0 : kind == "underline" ? half : -half;
-            }
-            append(lines, rectangle(0, g.size * (y - thick / 2), width, g.size * thick, 0, 0, 1),
-                   Affine{c, s, -s, c, g.line.x, g.line.y});
-          }
-          paint(text.runs[d.run], lines, std::nullopt);
-        }
-    };
-    decorate(false);
-    Shape all; // of those that have the run's paint, one after another
-    for (size_t i = begin; i < end; ++i) {
-      if (text.glyphs[i].hidden) continue;
-      for (const Text::Part& part : text.glyphs[i].parts) {
-        if (!part.isForeground) paint(run, all, std::nullopt), all = Shape();
-        Shape one;
-        append(part.isForeground ? all : one, part.shape, text.glyphs[i].map);
-        if (!part.isForeground) paint(run, one, part.color);
-      }
-    }
-    paint(run, all, std::nullopt);
-    decorate(true);
-  }
 }
 
 void Importer::drawText(pugi::xml_node node, const State& state) {
