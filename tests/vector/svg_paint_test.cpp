@@ -110,6 +110,7 @@ TEST(SvgPaint, CirclesOfARadialGradientThatAreOneAreAnEdge) {
   EXPECT_LT(edge.endRadius, 30.01f);
   EXPECT_EQ(gradient("fr='30' fx='40'").endRadius, 30);
   EXPECT_EQ(gradient("fr='20'").endRadius, 30);
+  EXPECT_EQ(gradient("fr='30' spreadMethod='repeat'").endRadius, 30); // there is nothing between to repeat
 }
 
 TEST(SvgPaint, GradientsTakeWhatTheirTemplatesHave) {

@@ -195,16 +195,16 @@ void SvgText::shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyph
     return std::tuple(std::string_view(s.families), std::string_view(s.language), s.weight, s.letterSpacing / s.size,
                       s.italic != 0, s.smallCaps != 0, s.unkerned != 0, s.unligated != 0);
   };
+  // Spans of further styles are shaped by themselves, so that long lines are not shaped again and again.
+  const size_t mostStyles = std::clamp<size_t>(65536 / std::max(text.size, 1u), 1, 64);
   std::vector<uint32_t> leaders; // a span of each style
   std::vector<size_t> styles;    // by span
   for (uint32_t i = 0; i < text.spanCount; ++i) {
     const auto same = std::find_if(leaders.begin(), leaders.end(),
                                    [&](uint32_t f) { return styleOf(text.spans[f]) == styleOf(text.spans[i]); });
     styles.push_back(static_cast<size_t>(same - leaders.begin()));
-    if (same == leaders.end()) leaders.push_back(i);
+    if (same == leaders.end() && leaders.size() < mostStyles) leaders.push_back(i);
   }
-  constexpr size_t kMostStyles = 64;
-  if (leaders.size() > kMostStyles) throw std::runtime_error("styles");
   std::vector<Cluster> taken;
   std::vector<uint32_t> order(text.size); // of bytes, from left to right
   for (size_t style = 0; style < leaders.size(); ++style) {
@@ -217,6 +217,17 @@ void SvgText::shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyph
                                                      [](uint32_t at, const auto& s) { return at < s.end; });
       if (styles[static_cast<size_t>(span - text.spans)] != style) continue;
       cluster.size = span->size;
+      taken.push_back(std::move(cluster));
+    }
+  }
+  for (uint32_t i = 0; i < text.spanCount; ++i) {
+    if (styles[i] < leaders.size()) continue;
+    const GpgpSvgTextSpan& span = text.spans[i];
+    std::vector<Cluster> clusters;
+    shapeAs({text.text + span.begin, span.end - span.begin, &span, 1, text.rightToLeft}, span, clusters);
+    for (Cluster& cluster : clusters) {
+      cluster.begin += span.begin, cluster.end += span.begin;
+      cluster.size = span.size;
       taken.push_back(std::move(cluster));
     }
   }

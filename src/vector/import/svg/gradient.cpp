@@ -159,10 +159,10 @@ std::shared_ptr<const Gradient> Importer::gradientOf(const GradientChain& chain,
     g.end[0] = number("x2", LengthAxis::X, 100);
     g.end[1] = number("y2", LengthAxis::Y, 0);
   }
-  if (radial && g.startRadius == g.endRadius && g.start[0] == g.end[0] && g.start[1] == g.end[1])
-    g.endRadius *= 1.0001f; // the first colour inside, the last around it
   const std::string_view spread = trim(text("spreadMethod"));
   g.spread = spread == "reflect" ? GPGP_SPREAD_REFLECT : spread == "repeat" ? GPGP_SPREAD_REPEAT : GPGP_SPREAD_PAD;
+  const bool isEdge = radial && g.startRadius == g.endRadius && g.start[0] == g.end[0] && g.start[1] == g.end[1];
+  if (isEdge && g.spread == GPGP_SPREAD_PAD) g.endRadius *= 1.0001f; // the first colour inside, the last around it
   g.interpolateSrgb = !styleOf(node, state.lengths).mixesLinear;
   Affine map = surface.space;
   if (!userSpace) {
