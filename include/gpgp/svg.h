@@ -35,6 +35,7 @@ typedef struct GpgpSvgTextSpan {
   float weight;         /**< 1 to 1000; 400 is regular */
   float letterSpacing;  /**< units after each grapheme */
   VkBool32 italic, smallCaps, unkerned; /**< unkerned: kerning is off */
+  VkBool32 unligated;                   /**< optional ligatures are off */
 } GpgpSvgTextSpan;
 
 /** A line of an SVG's text. Spans cover it without gaps, in order. */
@@ -57,7 +58,13 @@ typedef struct GpgpSvgGlyph {
   const VkBool32* foreground; /**< one for each path; VK_TRUE: painted as the SVG says. NULL: all are */
   /** Of the glyph's font, in em, as in GpgpFontInfo. */
   float ascent, descent, xHeight, underlinePosition, underlineThickness, strikePosition, strikeThickness;
-  VkBool32 incomplete; /**< VK_TRUE: a part of the glyph, such as an image, is not among the paths */
+  float subscript, superscript; /**< how far they lie below and above the baseline */
+  VkBool32 incomplete;          /**< VK_TRUE: a part of the glyph is neither among the paths nor the image */
+  /** A bitmap glyph's image, which goes to GpgpSvgSource::imageFn as a PNG file; NULL: it has none. RGBA, 8 bits each,
+   *  sRGB, straight alpha; rows from the top, without gaps. */
+  const uint8_t* image;
+  uint32_t imageWidth, imageHeight;
+  float imageBox[4]; /**< where it lies: left, top, right, bottom in em, +Y down */
 } GpgpSvgGlyph;
 typedef void(GPGP_CALL* GpgpSvgGlyphFn)(void* glyphUserData, const GpgpSvgGlyph* glyph);
 /** Shapes a line, and calls glyphFn for each of its glyphs from left to right. Any other result than SUCCESS leaves

@@ -99,6 +99,7 @@ typedef struct GpgpFontInfo {
   float capHeight, xHeight; /**< 0: the font does not state it */
   float underlinePosition, underlineThickness;
   float strikePosition, strikeThickness;
+  float subscript, superscript; /**< how far below and above the baseline they lie */
   GpgpFontColors colors;
   uint32_t paletteCount;
   const GpgpFontAxis* axes;

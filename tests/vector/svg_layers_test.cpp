@@ -687,6 +687,14 @@ TEST(SvgLayers, ShapesOfClipsHaveClips) {
            "height='9' clip-path='url(#c)'/>");
   ASSERT_EQ(self.placed.size(), 1u);
   EXPECT_NE(self.placed[0].find("contains itself"), std::string::npos);
+  // A clipPath inside that leads back is none: the shape that it clips is whole.
+  const Import back = page("<clipPath id='e'><rect width='9' height='4' clip-path='url(#c)'/></clipPath><clipPath "
+                           "id='c'><rect width='9' height='9' clip-path='url(#e)'/></clipPath><rect width='9' "
+                           "height='9' clip-path='url(#c)'/>");
+  EXPECT_EQ(back.placed, Texts{"test.svg:2:94: warning: clip-path 'url(#e)' contains what it clips: <rect> is drawn "
+                               "without it"});
+  ASSERT_EQ(layersOf(back).size(), 1u);
+  EXPECT_EQ(pathsIn(back, layersOf(back)[0].layer->layer.mask), 1u);
   const Import none =
       page("<clipPath id='n'/><clipPath id='c'><rect width='9' height='9' clip-path='url(#n)'/></clipPath><rect "
            "width='9' height='9' clip-path='url(#c)'/>");

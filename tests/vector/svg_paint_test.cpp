@@ -96,6 +96,23 @@ TEST(SvgPaint, ContextPaintsAreTheUses) {
   EXPECT_EQ(page(many + "</g></defs><use href='#many' fill='url(#g)'/>").drawing.paths.size(), 3000u);
 }
 
+TEST(SvgPaint, CirclesOfARadialGradientThatAreOneAreAnEdge) {
+  const auto gradient = [](const std::string& attributes) {
+    const Import i = page("<radialGradient id='g' gradientUnits='userSpaceOnUse' cx='50' cy='50' r='30' " + attributes +
+                          "><stop stop-color='red'/><stop offset='1' stop-color='blue'/></radialGradient><rect "
+                          "width='100' height='100' fill='url(#g)'/>");
+    EXPECT_EQ(i.drawing.paths.size(), 1u);
+    return i.drawing.paths[0].gradient->gradient;
+  };
+  const GpgpGradient edge = gradient("fr='30'");
+  EXPECT_EQ(edge.startRadius, 30);
+  EXPECT_GT(edge.endRadius, 30); // the first colour inside, the last outside
+  EXPECT_LT(edge.endRadius, 30.01f);
+  EXPECT_EQ(gradient("fr='30' fx='40'").endRadius, 30);
+  EXPECT_EQ(gradient("fr='20'").endRadius, 30);
+  EXPECT_EQ(gradient("fr='30' spreadMethod='repeat'").endRadius, 30); // there is nothing between to repeat
+}
+
 TEST(SvgPaint, GradientsTakeWhatTheirTemplatesHave) {
   const std::string stops = "<stop stop-color='red'/><stop offset='1' stop-color='blue'/>",
                     rect = "<rect width='100' height='100' fill='url(#g)'/>";

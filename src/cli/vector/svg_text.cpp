@@ -63,6 +63,8 @@ bool isFamily(const std::string& family, const std::string& wanted) {
   return family == wanted;
 }
 
+constexpr float kEm = 1024; ///< lines are laid out at this size
+
 void check(GpgpResult result) {
   if (result != GPGP_SUCCESS) throw std::runtime_error("text");
 }
@@ -135,74 +137,141 @@ std::vector<GpgpFont> SvgText::chosen(const GpgpSvgTextSpan& span, std::string_v
   return fonts;
 }
 
-void SvgText::shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyphData) {
-  // Of a span: those in front, behind or both.
-  const GpgpFontFeature features[] = {{GPGP_TAG('s', 'm', 'c', 'p'), 1}, {GPGP_TAG('k', 'e', 'r', 'n'), 0}};
-  std::vector<std::vector<GpgpFont>> fonts(text.spanCount);
-  std::vector<GpgpTextSpan> spans(text.spanCount);
-  for (uint32_t i = 0; i < text.spanCount; ++i) {
-    const GpgpSvgTextSpan& from = text.spans[i];
-    fonts[i] = chosen(from, {text.text + from.begin, from.end - from.begin});
-    spans[i].begin = from.begin, spans[i].end = from.end;
-    GpgpTextStyle& style = spans[i].style;
-    style.fonts = fonts[i].data();
-    style.fontCount = static_cast<uint32_t>(fonts[i].size());
-    style.size = from.size;
-    style.letterSpacing = from.letterSpacing;
-    style.language = *from.language ? from.language : nullptr;
-    style.features = features + (from.smallCaps ? 0 : 1);
-    style.featureCount = uint32_t(from.smallCaps != 0) + uint32_t(from.unkerned != 0);
-  }
+void SvgText::shapeAs(const GpgpSvgText& text, const GpgpSvgTextSpan& span, std::vector<Cluster>& clusters) {
+  const std::vector<GpgpFont> fonts = chosen(span, {text.text, text.size});
+  std::vector<GpgpFontFeature> features;
+  if (span.smallCaps) features.push_back({GPGP_TAG('s', 'm', 'c', 'p'), 1});
+  if (span.unkerned) features.push_back({GPGP_TAG('k', 'e', 'r', 'n'), 0});
+  if (span.unligated)
+    for (const GpgpTag tag : {GPGP_TAG('l', 'i', 'g', 'a'), GPGP_TAG('c', 'l', 'i', 'g')}) features.push_back({tag, 0});
   GpgpTextInfo info = init<GpgpTextInfo>();
   info.text = text.text;
   info.size = text.size;
-  info.style = spans[0].style;
-  info.spans = spans.data();
-  info.spanCount = text.spanCount;
+  info.style.fonts = fonts.data();
+  info.style.fontCount = static_cast<uint32_t>(fonts.size());
+  info.style.size = kEm;
+  info.style.letterSpacing = span.letterSpacing / span.size * kEm;
+  info.style.language = *span.language ? span.language : nullptr;
+  info.style.features = features.data();
+  info.style.featureCount = static_cast<uint32_t>(features.size());
   info.direction = text.rightToLeft ? GPGP_TEXT_RIGHT_TO_LEFT : GPGP_TEXT_LEFT_TO_RIGHT;
   info.align = GPGP_TEXT_ALIGN_LEFT;
   check(layout_.set(info));
   const Result<GpgpLayoutInfo> made = layout_.info();
   check(made.code());
   const GpgpTextLine& line = made->lines[0];
-  float edge = 0; // what the glyphs are measured from: white space may hang out on the left
-  for (uint32_t i = 0; i < line.glyphCount; ++i) edge = std::min(edge, made->glyphs[line.firstGlyph + i].x);
+  const GpgpTextGlyph* glyphs = made->glyphs + line.firstGlyph;
   std::vector<uint32_t> ends{text.size}; // of clusters
-  for (uint32_t i = 0; i < line.glyphCount; ++i) ends.push_back(made->glyphs[line.firstGlyph + i].cluster);
+  for (uint32_t i = 0; i < line.glyphCount; ++i) ends.push_back(glyphs[i].cluster);
   std::sort(ends.begin(), ends.end());
-  uint32_t previous = UINT32_MAX;
+  float pen = 0; // white space may hang out on the left
+  for (uint32_t i = 0; i < line.glyphCount; ++i) pen = std::min(pen, glyphs[i].x);
   for (uint32_t i = 0; i < line.glyphCount; ++i) {
-    const GpgpTextGlyph& glyph = made->glyphs[line.firstGlyph + i];
-    const auto face =
-        std::find_if(faces_.begin(), faces_.end(), [&](const Face& f) { return f.font.get() == glyph.font; });
-    if (face == faces_.end()) continue;
-    GpgpSvgGlyph out{};
-    out.cluster = glyph.cluster;
-    out.x = glyph.x - edge;
-    out.y = glyph.y - line.baseline;
-    out.size = glyph.size;
-    if (glyph.cluster != previous) { // up to the next cluster
-      const auto behind = std::upper_bound(ends.begin(), ends.end(), glyph.cluster);
-      const uint32_t end = behind == ends.end() ? text.size : *behind;
+    const GpgpTextGlyph& glyph = glyphs[i];
+    if (i == 0 || glyph.cluster != glyphs[i - 1].cluster) {
+      // Where several stand for one grapheme, the layout knows the width of all of them alone.
+      const bool goesOn =
+          i > 0 && !(clusters.back().width > 0) &&
+          clusters.back().begin<glyph.cluster&& * layout_.moveCaret(clusters.back().begin, GPGP_CARET_NEXT)>
+              glyph.cluster;
+      if (!goesOn) clusters.push_back({glyph.cluster, 0, pen, 0, 0, fonts.empty() ? nullptr : fonts[0], {}});
+      Cluster& cluster = clusters.back();
+      cluster.end = *std::upper_bound(ends.begin(), ends.end() - 1, glyph.cluster);
       GpgpTextRect rects[8];
       uint32_t count = 8;
-      if (layout_.selection(glyph.cluster, end, count, rects) == GPGP_SUCCESS)
-        for (uint32_t k = 0; k < count; ++k) out.advance += rects[k].width;
+      if (layout_.selection(cluster.begin, cluster.end, count, rects) != GPGP_SUCCESS) count = 0;
+      if (count > 0 && !goesOn) cluster.left = rects[0].x;
+      for (uint32_t k = 0; k < count; ++k) cluster.width += rects[k].width;
+      pen = cluster.left + cluster.width;
     }
-    previous = glyph.cluster;
-    const GpgpFontInfo& f = face->info;
-    out.ascent = f.ascent, out.descent = f.descent, out.xHeight = f.xHeight;
-    out.underlinePosition = f.underlinePosition, out.underlineThickness = f.underlineThickness;
-    out.strikePosition = f.strikePosition, out.strikeThickness = f.strikeThickness;
-    GpgpGlyphOutlineInfo outlineInfo = init<GpgpGlyphOutlineInfo>();
-    outlineInfo.glyph = glyph.glyph;
-    check(face->font.outline(outlineInfo, [&](const GpgpGlyphOutline& outline) {
-      out.paths = outline.paths;
-      out.pathCount = outline.pathCount;
-      out.foreground = outline.foreground;
-      out.incomplete = outline.incomplete || outline.image;
-      glyphFn(glyphData, &out);
-    }));
+    Cluster& cluster = clusters.back();
+    cluster.glyphs.push_back({glyph.font, glyph.glyph, glyph.x - cluster.left, glyph.y - line.baseline});
+  }
+}
+
+// Each style shapes the whole line, and its spans take their clusters of that: letters are kerned across styles.
+void SvgText::shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyphData) {
+  const auto styleOf = [](const GpgpSvgTextSpan& s) {
+    return std::tuple(std::string_view(s.families), std::string_view(s.language), s.weight, s.letterSpacing / s.size,
+                      s.italic != 0, s.smallCaps != 0, s.unkerned != 0, s.unligated != 0);
+  };
+  // Spans of further styles are shaped by themselves, so that long lines are not shaped again and again.
+  const size_t mostStyles = std::clamp<size_t>(65536 / std::max(text.size, 1u), 1, 64);
+  std::vector<uint32_t> leaders; // a span of each style
+  std::vector<size_t> styles;    // by span
+  for (uint32_t i = 0; i < text.spanCount; ++i) {
+    const auto same = std::find_if(leaders.begin(), leaders.end(),
+                                   [&](uint32_t f) { return styleOf(text.spans[f]) == styleOf(text.spans[i]); });
+    styles.push_back(static_cast<size_t>(same - leaders.begin()));
+    if (same == leaders.end() && leaders.size() < mostStyles) leaders.push_back(i);
+  }
+  std::vector<Cluster> taken;
+  std::vector<uint32_t> order(text.size); // of bytes, from left to right
+  for (size_t style = 0; style < leaders.size(); ++style) {
+    std::vector<Cluster> clusters;
+    shapeAs(text, text.spans[leaders[style]], clusters);
+    for (uint32_t i = 0; i < clusters.size(); ++i) {
+      Cluster& cluster = clusters[i];
+      if (style == 0) std::fill(order.begin() + cluster.begin, order.begin() + cluster.end, i);
+      const GpgpSvgTextSpan* span = std::upper_bound(text.spans, text.spans + text.spanCount - 1, cluster.begin,
+                                                     [](uint32_t at, const auto& s) { return at < s.end; });
+      if (styles[static_cast<size_t>(span - text.spans)] != style) continue;
+      cluster.size = span->size;
+      taken.push_back(std::move(cluster));
+    }
+  }
+  for (uint32_t i = 0; i < text.spanCount; ++i) {
+    if (styles[i] < leaders.size()) continue;
+    const GpgpSvgTextSpan& span = text.spans[i];
+    std::vector<Cluster> clusters;
+    shapeAs({text.text + span.begin, span.end - span.begin, &span, 1, text.rightToLeft}, span, clusters);
+    for (Cluster& cluster : clusters) {
+      cluster.begin += span.begin, cluster.end += span.begin;
+      cluster.size = span.size;
+      taken.push_back(std::move(cluster));
+    }
+  }
+  std::stable_sort(taken.begin(), taken.end(), [&](const Cluster& a, const Cluster& b) {
+    return std::pair(order[a.begin], a.begin) < std::pair(order[b.begin], b.begin);
+  });
+  const auto faceOf = [this](GpgpFont font) {
+    return std::find_if(faces_.begin(), faces_.end(), [&](const Face& f) { return f.font.get() == font; });
+  };
+  float pen = 0;
+  for (const Cluster& cluster : taken) {
+    const float scale = cluster.size / kEm;
+    for (const Cluster::Glyph& glyph : cluster.glyphs) {
+      const auto face = faceOf(glyph.font);
+      if (face == faces_.end()) continue;
+      GpgpSvgGlyph out{};
+      out.cluster = cluster.begin;
+      out.x = pen + glyph.x * scale;
+      out.y = glyph.y * scale;
+      out.size = cluster.size;
+      out.advance = &glyph == cluster.glyphs.data() ? cluster.width * scale : 0;
+      const GpgpFontInfo& own = face->info;
+      out.ascent = own.ascent, out.descent = own.descent, out.xHeight = own.xHeight;
+      const auto first = faceOf(cluster.first); // lines and baselines are those of the font that is asked for
+      const GpgpFontInfo& f = first == faces_.end() ? own : first->info;
+      out.underlinePosition = f.underlinePosition, out.underlineThickness = f.underlineThickness;
+      out.strikePosition = f.strikePosition, out.strikeThickness = f.strikeThickness;
+      out.subscript = f.subscript, out.superscript = f.superscript;
+      GpgpGlyphOutlineInfo outlineInfo = init<GpgpGlyphOutlineInfo>();
+      outlineInfo.glyph = glyph.glyph;
+      check(face->font.outline(outlineInfo, [&](const GpgpGlyphOutline& outline) {
+        out.paths = outline.paths;
+        out.pathCount = outline.pathCount;
+        out.foreground = outline.foreground;
+        out.incomplete = outline.incomplete;
+        if (outline.image) {
+          out.image = outline.image->pixels;
+          out.imageWidth = outline.image->width, out.imageHeight = outline.image->height;
+          std::copy_n(outline.image->box, 4, out.imageBox);
+        }
+        glyphFn(glyphData, &out);
+      }));
+    }
+    pen += cluster.width * scale;
   }
 }
 

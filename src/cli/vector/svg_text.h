@@ -37,8 +37,22 @@ private:
     bool italic = false;
     SystemFont source{}; ///< of one of the system's
   };
+  /// What stands for some characters, as a line has it from left to right; lengths are at the size of layouts.
+  struct Cluster {
+    struct Glyph {
+      GpgpFont font;
+      uint32_t glyph;
+      float x, y; ///< from where the cluster begins on the baseline
+    };
+    uint32_t begin = 0, end = 0;         ///< bytes
+    float left = 0, width = 0, size = 0; ///< size: what is asked for
+    GpgpFont first{};                    ///< the font that is asked for first
+    std::vector<Glyph> glyphs;
+  };
   static GpgpResult GPGP_CALL shape(void* userData, const GpgpSvgText* text, GpgpSvgGlyphFn glyphFn, void* glyphData);
   void shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyphData);
+  /// The whole line in the style of one span.
+  void shapeAs(const GpgpSvgText& text, const GpgpSvgTextSpan& span, std::vector<Cluster>& clusters);
   std::vector<GpgpFont> chosen(const GpgpSvgTextSpan& span, std::string_view text);
   std::vector<GpgpFont> chosenOfSystem(const GpgpSvgTextSpan& span, std::string_view text);
 

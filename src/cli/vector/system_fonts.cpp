@@ -49,6 +49,31 @@ std::vector<std::pair<std::string, float>> axesOf(std::string_view list) {
   }
   return axes;
 }
+
+/// Whether the configuration has nothing for any of the families: it is the same to it as one that cannot be.
+bool areUnknown(FcConfig* config, const std::vector<std::string>& families) {
+  constexpr const char* noFamily = "gpgp no family";
+  const auto behind = [config](const std::vector<std::string>& names) { // what is taken where there are none of them
+    const Pattern pattern(FcPatternCreate());
+    for (const std::string& name : names) FcPatternAddString(pattern.get(), FC_FAMILY, bytes(name));
+    FcConfigSubstitute(config, pattern.get(), FcMatchPattern);
+    std::vector<std::string> all;
+    FcChar8* family = nullptr;
+    for (int i = 0; FcPatternGetString(pattern.get(), FC_FAMILY, i, &family) == FcResultMatch; ++i)
+      if (const std::string name = reinterpret_cast<const char*>(family);
+          std::find(names.begin(), names.end(), name) == names.end())
+        all.push_back(name);
+    return all;
+  };
+  const auto isInstalled = [config](const std::string& name) {
+    const Pattern pattern(FcPatternBuild(nullptr, FC_FAMILY, FcTypeString, bytes(name), nullptr));
+    const std::unique_ptr<FcObjectSet, Destroyer<FcObjectSetDestroy>> what(FcObjectSetBuild(FC_FAMILY, nullptr));
+    const Sorted found(FcFontList(config, pattern.get(), what.get()));
+    return found && found->nfont > 0;
+  };
+  return !families.empty() && behind(families) == behind({noFamily}) &&
+         std::none_of(families.begin(), families.end(), isInstalled);
+}
 } // namespace
 
 void SystemFonts::Closer::operator()(_FcConfig* config) const { FcConfigDestroy(config); }
@@ -62,6 +87,8 @@ std::vector<SystemFont> SystemFonts::find(const std::vector<std::string>& famili
   if (!config_) return {};
   const Pattern wanted(FcPatternCreate());
   for (const std::string& family : families) FcPatternAddString(wanted.get(), FC_FAMILY, bytes(family));
+  if (areUnknown(config_.get(), families)) // as browsers and resvg have it
+    FcPatternAddString(wanted.get(), FC_FAMILY, bytes("serif"));
   FcPatternAddDouble(wanted.get(), FC_WEIGHT, FcWeightFromOpenTypeDouble(static_cast<double>(weight)));
   FcPatternAddInteger(wanted.get(), FC_SLANT, italic ? FC_SLANT_ITALIC : FC_SLANT_ROMAN);
   FcPatternAddBool(wanted.get(), FC_SCALABLE, FcTrue);

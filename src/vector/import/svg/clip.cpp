@@ -57,6 +57,25 @@ Style Importer::styleOf(pugi::xml_node node, const LengthContext& lengths) {
   return style;
 }
 
+bool Importer::refersBack(pugi::xml_node clipPath, const LengthContext& lengths, std::vector<pugi::xml_node>& seen) {
+  for (pugi::xml_node at = clipPath; at && !stopped(at);) {
+    const std::string value = document_.name(at).empty() ? std::string() : styleOf(at, lengths).clipPath;
+    const pugi::xml_node target = value.empty() ? pugi::xml_node() : document_.find(referenceOf(value));
+    if (target && std::find(used_.begin(), used_.end(), target) != used_.end()) return true;
+    if (target && std::find(seen.begin(), seen.end(), target) == seen.end()) {
+      seen.push_back(target);
+      if (seen.size() > 32 || refersBack(target, lengths, seen)) return true;
+    }
+    if (at.first_child()) {
+      at = at.first_child();
+      continue;
+    }
+    while (at && at != clipPath && !at.next_sibling()) at = at.parent();
+    at = at == clipPath ? pugi::xml_node() : at.next_sibling();
+  }
+  return false;
+}
+
 void Importer::clip(pugi::xml_node node, std::string_view name, State& state, const Frame* of) {
   const Affine space = of ? of->space : spaceOf(node, name, state);
   std::optional<Box> box; // of the element, when first asked for
@@ -76,6 +95,10 @@ void Importer::clip(pugi::xml_node node, std::string_view name, State& state, co
     if (std::find(targets.begin(), targets.end(), target) != targets.end() ||
         std::find(used_.begin(), used_.end(), target) != used_.end())
       return without(shown + " contains itself");
+    const bool isInside = std::any_of(used_.begin(), used_.end(),
+                                      [&](pugi::xml_node used) { return document_.name(used) == "clipPath"; });
+    std::vector<pugi::xml_node> seen{target};
+    if (isInside && refersBack(target, state.lengths, seen)) return without(shown + " contains what it clips");
     if (state.clips >= shader::kMaxClipDepth || state.clips + state.fading + state.layers >= GPGP_MAX_LAYER_DEPTH ||
         layerCount_ >= limits_.layers)
       return without("is inside too many others");

@@ -161,6 +161,8 @@ std::shared_ptr<const Gradient> Importer::gradientOf(const GradientChain& chain,
   }
   const std::string_view spread = trim(text("spreadMethod"));
   g.spread = spread == "reflect" ? GPGP_SPREAD_REFLECT : spread == "repeat" ? GPGP_SPREAD_REPEAT : GPGP_SPREAD_PAD;
+  const bool isEdge = radial && g.startRadius == g.endRadius && g.start[0] == g.end[0] && g.start[1] == g.end[1];
+  if (isEdge && g.spread == GPGP_SPREAD_PAD) g.endRadius *= 1.0001f; // the first colour inside, the last around it
   g.interpolateSrgb = !styleOf(node, state.lengths).mixesLinear;
   Affine map = surface.space;
   if (!userSpace) {

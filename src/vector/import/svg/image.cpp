@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <zlib.h>
+
 namespace gpgp::vector::svg {
 namespace {
 
@@ -25,6 +27,37 @@ const char* formatOf(const std::vector<uint8_t>& bytes) {
   for (const Format& format : kFormats)
     if (text.starts_with(format.begin)) return format.name;
   return nullptr;
+}
+
+/// RGBA of 8 bits each as a PNG file; empty where there is no memory for it.
+std::vector<uint8_t> pngOf(const uint8_t* pixels, uint32_t width, uint32_t height) {
+  const auto word = [](std::vector<uint8_t>& to, uint32_t value) {
+    for (const int shift : {24, 16, 8, 0}) to.push_back(static_cast<uint8_t>(value >> shift));
+  };
+  std::vector<uint8_t> file{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  const auto chunk = [&](std::string_view name, const std::vector<uint8_t>& data) {
+    word(file, static_cast<uint32_t>(data.size()));
+    const size_t begin = file.size();
+    file.insert(file.end(), name.begin(), name.end());
+    file.insert(file.end(), data.begin(), data.end());
+    word(file, static_cast<uint32_t>(crc32(0, file.data() + begin, static_cast<uInt>(file.size() - begin))));
+  };
+  std::vector<uint8_t> header, rows;
+  word(header, width), word(header, height);
+  header.insert(header.end(), {8, 6, 0, 0, 0}); // bits, RGBA
+  const size_t row = size_t(4) * width;
+  for (uint32_t y = 0; y < height; ++y) {
+    rows.push_back(0); // not filtered
+    rows.insert(rows.end(), pixels + y * row, pixels + (y + 1) * row);
+  }
+  uLongf size = compressBound(static_cast<uLong>(rows.size()));
+  std::vector<uint8_t> packed(size);
+  if (compress2(packed.data(), &size, rows.data(), static_cast<uLong>(rows.size()), Z_BEST_SPEED) != Z_OK) return {};
+  packed.resize(size);
+  chunk("IHDR", header);
+  chunk("IDAT", packed);
+  chunk("IEND", {});
+  return file;
 }
 
 } // namespace
@@ -65,6 +98,22 @@ const Importer::Picture* Importer::pictureOf(pugi::xml_node node) {
     if (drawing->load(std::as_bytes(std::span(bytes)))) return picture.drawing = drawing, &picture;
   }
   return nullptr;
+}
+
+const Importer::Picture* Importer::pictureOfGlyph(const GpgpSvgGlyph& glyph) {
+  if (!images_.fn || pictureCount_ >= GPGP_MAX_IMAGES) return nullptr;
+  std::vector<uint8_t> file = pngOf(glyph.image, glyph.imageWidth, glyph.imageHeight);
+  if (file.empty()) return nullptr;
+  const auto [known, isNew] = glyphPictures_.try_emplace(std::move(file));
+  Picture& picture = known->second;
+  if (isNew) {
+    picture.index = pictureCount_;
+    uint32_t width = 0, height = 0;
+    const std::vector<uint8_t>& bytes = known->first;
+    if (images_.fn(images_.userData, picture.index, bytes.data(), bytes.size(), &width, &height) && width && height)
+      picture.width = width, picture.height = height, ++pictureCount_;
+  }
+  return picture.width ? &picture : nullptr;
 }
 
 void Importer::exchange(Importer& other) {
@@ -157,21 +206,29 @@ void Importer::drawPicture(pugi::xml_node node, const State& state, const ViewBo
   const double left = std::max(x, fitted.e), top = std::max(y, fitted.f);
   const double right = std::min(x + w, fitted.e + pw * fitted.a), bottom = std::min(y + h, fitted.f + ph * fitted.d);
   if (!(right > left && bottom > top)) return;
-  const Shape shape = rectangle(left, top, right - left, bottom - top, 0, 0, 1);
-  if (mode_ == Mode::Measure) return measure(shape, toBox_ * state.transform);
+  if (mode_ == Mode::Measure)
+    return measure(rectangle(left, top, right - left, bottom - top, 0, 0, 1), toBox_ * state.transform);
   if (mode_ == Mode::Clip || !state.style.visible) return;
-  const Affine map = state.transform * fitted * Affine{pw, 0, 0, ph, 0, 0};
+  const Affine map = fitted * Affine{pw, 0, 0, ph, 0, 0};
+  group_ = state.group;
+  emitPicture(
+      rectangle((left - map.e) / map.a, (top - map.f) / map.d, (right - left) / map.a, (bottom - top) / map.d, 0, 0, 1),
+      state, map, *picture, node);
+}
+
+void Importer::emitPicture(const Shape& shape, const State& state, const Affine& own, const Picture& picture,
+                           pugi::xml_node node) {
+  const Affine map = state.transform * own;
   const double to[6] = {map.a, map.b, map.c, map.d, map.e, map.f};
   auto paint = std::make_shared<GpgpImagePaint>();
-  paint->image = picture->index;
+  paint->image = picture.index;
   for (size_t i = 0; i < 6; ++i) paint->transform[i] = static_cast<float>(to[i]);
   const float* t = paint->transform;
   const auto area =
       static_cast<double>(t[0]) * static_cast<double>(t[3]) - static_cast<double>(t[1]) * static_cast<double>(t[2]);
   for (const float v : paint->transform)
     if (!(std::fabs(static_cast<double>(v) / area) < 1e20 && std::fabs(v) < 1e15f)) return; // seen from its edge
-  group_ = state.group;
-  emit(shape, state.transform, GPGP_FILL_NON_ZERO, {{0, 0, 0, 1}, nullptr, std::move(paint)}, state.opacity, node);
+  emit(shape, map, GPGP_FILL_NON_ZERO, {{0, 0, 0, 1}, nullptr, std::move(paint)}, state.opacity, node);
 }
 
 } // namespace gpgp::vector::svg

@@ -8,6 +8,7 @@
 
 #include <deque>
 #include <functional>
+#include <map>
 #include <optional>
 #include <unordered_map>
 
@@ -144,6 +145,8 @@ private:
   // clip.cpp
   /// Puts what the element refers to around it; says so where that cannot be.
   void clip(pugi::xml_node node, std::string_view name, State& state, const Frame* of);
+  /// Whether a clipPath inside of one that is being shown leads back to that. `seen`: those that were looked at.
+  bool refersBack(pugi::xml_node clipPath, const LengthContext& lengths, std::vector<pugi::xml_node>& seen);
   /// Of an element that others refer to: what it has from where it stands, not from them.
   Style styleOf(pugi::xml_node node, const LengthContext& lengths);
   /// Of all shapes inside, strokes and clips aside, in coordinates given by their transform to the page.
@@ -187,6 +190,11 @@ private:
     std::shared_ptr<const Document> drawing = nullptr; ///< instead of a picture
   };
   const Picture* pictureOf(pugi::xml_node node);
+  /// Of a bitmap glyph; nothing where no one decodes it.
+  const Picture* pictureOfGlyph(const GpgpSvgGlyph& glyph);
+  /// A part of the unit square, which the picture fills. `map`: from there to the state's coordinates.
+  void emitPicture(const Shape& shape, const State& state, const Affine& map, const Picture& picture,
+                   pugi::xml_node node);
   void drawImage(pugi::xml_node node, const State& state);
   /// The node's picture where it lies: x, y, width, height. What cannot be drawn is said.
   void drawPicture(pugi::xml_node node, const State& state, const ViewBox& place);
@@ -277,6 +285,7 @@ private:
   const ImageDecoder& images_;
   const ImportDetail& detail_;
   std::unordered_map<std::string_view, Picture> pictures_; // by href
+  std::map<std::vector<uint8_t>, Picture> glyphPictures_;  // by their files
   uint32_t pictureCount_ = 0;
   StyleSheet sheet_;
   const GpgpFileSystem* files_;

@@ -346,10 +346,10 @@ void Importer::FilterReader::image(Primitive& p) {
     if (inside) return wrong("contains itself");
     inner.transform = space * Affine{1, 0, 0, 1, p.place.left, p.place.top};
     inner.style = importer.styleOf(referred.parent(), state.lengths);
-    show = [this, referred](State& own) {
-      importer.used_.push_back(referred);
+    show = [this, referred, filter = p.node.parent()](State& own) { // what has the filter is shown without it
+      importer.used_.insert(importer.used_.end(), {referred, filter});
       importer.visit(referred, own);
-      importer.used_.pop_back();
+      importer.used_.resize(importer.used_.size() - 2);
     };
   } else {
     show = [this, &p](State& own) {

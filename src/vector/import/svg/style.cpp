@@ -311,6 +311,11 @@ bool setMarkers(const Context& c) {
   std::string all;
   return setMarker(c, all) && (c.style.markers.fill(all), true);
 }
+bool setFontSize(const Context& c) {
+  double read = 0; // negative: an error of SVG 1.1, for which resvg shows nothing
+  return parseFontSize(c.value, c.parent, c.lengths, c.style.fontSize) ||
+         (parseLength(c.value, c.lengths, LengthAxis::X, read) && (c.style.fontSize = 0, true));
+}
 bool setWeight(const Context& c) {
   constexpr Word<double> names[] = {{"normal", 400}, {"bold", 700}};
   double& weight = c.style.text.weight;
@@ -389,7 +394,7 @@ const Property kProperties[] = {
     GPGP_PROPERTY("color-interpolation", mixesLinear, choose(c.value, kInterpolations, c.style.mixesLinear)),
     GPGP_PROPERTY("display", displayed, setDisplay(c)),
     GPGP_PROPERTY("overflow", overflowVisible, setOverflow(c)),
-    GPGP_PROPERTY("font-size", fontSize, parseFontSize(c.value, c.parent, c.lengths, c.style.fontSize)),
+    GPGP_PROPERTY("font-size", fontSize, setFontSize(c)),
     GPGP_PROPERTY("font", fontSize, parseFont(c.value, c.parent, c.lengths, c.style.fontSize, c.style.text)),
     GPGP_PROPERTY("paint-order", paintOrder, setPaintOrder(c)),
     GPGP_PROPERTY("vector-effect", nonScalingStroke, setVectorEffect(c)),
@@ -428,7 +433,10 @@ const Property kProperties[] = {
     GPGP_PROPERTY("direction", text.rightToLeft, choose(c.value, kDirections, c.style.text.rightToLeft)),
     GPGP_PROPERTY("writing-mode", text.vertical, setVertical(c)),
     GPGP_PROPERTY("white-space", text.space, setSpace(c)),
-    GPGP_PROPERTY("dominant-baseline", text.dominantBaseline, (c.style.text.dominantBaseline = lowered(c.value), true)),
+    GPGP_PROPERTY("dominant-baseline", text.dominantBaseline,
+                  (c.style.text.dominantBaseline =
+                       isWord(c.value, "no-change") ? c.parent.text.dominantBaseline : lowered(c.value),
+                   true)),
     GPGP_PROPERTY("alignment-baseline", text.alignmentBaseline,
                   (c.style.text.alignmentBaseline = lowered(c.value), true)),
     GPGP_PROPERTY("unicode-bidi", text.bidi, choose(c.value, kBidis, c.style.text.bidi)),

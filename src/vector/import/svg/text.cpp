@@ -1,6 +1,7 @@
 // Text (SVG 2, chapter 11) as outlines: characters with their places, lines that whoever compiles shapes in fonts, and
 // glyphs as the shapes of the element that they stand in.
-#include "vector/import/svg/importer.h"
+#include "vector/import/svg/text.h"
+#include "vector/import/svg/text_characters.h"
 #include "vector/import/svg/track.h"
 
 #include <algorithm>
@@ -12,55 +13,6 @@ namespace gpgp::vector::svg {
 namespace {
 
 constexpr size_t kMaxCharacters = 100'000, kMaxLine = 20'000;
-
-/// How far glyphs of a font go down for the baseline that is asked for, in em.
-double baselineOffset(std::string_view baseline, const GpgpSvgGlyph& g) {
-  const auto em = [](float v) { return static_cast<double>(v); };
-  if (baseline == "middle") return (g.xHeight > 0 ? em(g.xHeight) : 0.5) / 2;
-  if (baseline == "central") return (em(g.ascent) - em(g.descent)) / 2;
-  if (baseline == "hanging") return em(g.ascent) * 0.8;
-  if (baseline == "mathematical") return em(g.ascent) * 0.5;
-  if (baseline == "text-before-edge" || baseline == "before-edge") return em(g.ascent);
-  if (baseline == "text-after-edge" || baseline == "after-edge" || baseline == "ideographic") return -em(g.descent);
-  return 0;
-}
-
-/// The marks of direction that `unicode-bidi` stands for, before and behind an element's characters.
-struct BidiMarks {
-  std::string before, behind;
-};
-BidiMarks bidiMarksOf(const TextStyle& style) {
-  constexpr const char *popsEmbedding = "\u202c", *popsIsolate = "\u2069", *firstStrong = "\u2068";
-  const std::string embedding = style.rightToLeft ? "\u202b" : "\u202a",
-                    override = style.rightToLeft ? "\u202e" : "\u202d",
-                    isolate = style.rightToLeft ? "\u2067" : "\u2066";
-  switch (style.bidi) {
-  case TextStyle::Bidi::Normal: return {};
-  case TextStyle::Bidi::Embed: return {embedding, popsEmbedding};
-  case TextStyle::Bidi::Override: return {override, popsEmbedding};
-  case TextStyle::Bidi::Isolate: return {isolate, popsIsolate};
-  case TextStyle::Bidi::IsolateOverride: return {firstStrong + override, std::string(popsEmbedding) + popsIsolate};
-  case TextStyle::Bidi::Plaintext: return {firstStrong, popsIsolate};
-  }
-  return {};
-}
-
-/// Whether a character stands upright in vertical lines (Unicode Standard Annex 50, in outline): those of East Asia,
-/// and pictures.
-bool isUpright(std::string_view text, size_t offset) {
-  const auto byte = [&](size_t i) {
-    return offset + i < text.size() ? static_cast<uint32_t>(text[offset + i]) & 0x3f : 0;
-  };
-  const auto first = static_cast<uint8_t>(text[offset]);
-  const uint32_t c = first >= 0xf0   ? (first & 7u) << 18 | byte(1) << 12 | byte(2) << 6 | byte(3)
-                     : first >= 0xe0 ? (first & 15u) << 12 | byte(1) << 6 | byte(2)
-                                     : 0; // what is below U+0800 is not
-  constexpr uint32_t ranges[][2] = {
-      {0x1100, 0x11ff}, {0x2e80, 0x3007}, {0x3012, 0x3013},   {0x3020, 0x302f},   {0x3031, 0xa4cf},  {0xa960, 0xa97f},
-      {0xac00, 0xd7ff}, {0xe000, 0xfaff}, {0xfe10, 0xfe1f},   {0xff01, 0xff07},   {0xff0a, 0xff19},  {0xff1f, 0xff3a},
-      {0xff3c, 0xff5a}, {0xffe0, 0xffe7}, {0x1f000, 0x1f7ff}, {0x1f900, 0x1faff}, {0x20000, 0x3fffd}};
-  return std::any_of(std::begin(ranges), std::end(ranges), [c](const auto& r) { return c >= r[0] && c <= r[1]; });
-}
 
 Shape shapeOfGlyph(const GpgpPath& path) {
   Shape shape;
@@ -88,65 +40,7 @@ Shape shapeOfGlyph(const GpgpPath& path) {
   return shape;
 }
 
-void append(Shape& to, const Shape& from, const Affine& map) {
-  to.verbs.insert(to.verbs.end(), from.verbs.begin(), from.verbs.end());
-  for (const Point& p : from.points) to.points.push_back(map(p));
-}
-
 } // namespace
-
-struct Importer::Text {
-  struct Decoration {
-    std::string kinds; ///< of text-decoration
-    size_t run;        ///< whose paints it has
-  };
-  struct Run { // an element's own characters
-    State state;
-    pugi::xml_node node;
-    std::string language;
-    double shift = 0; ///< of its baseline, up
-    size_t track = 0; ///< 1 + index
-    std::vector<Decoration> decorations;
-  };
-  struct Element { // with what it says of its characters
-    pugi::xml_node node;
-    State state;
-    size_t first = 0, last = 0; ///< its characters
-  };
-  struct Character {
-    size_t begin = 0;  ///< of the marks of direction before it
-    size_t offset = 0; ///< its own first byte
-    size_t run = 0;
-    std::optional<double> x, y;
-    double dx = 0, dy = 0, rotate = 0;
-  };
-  struct Part { // of a glyph
-    Shape shape;
-    bool isForeground = true;
-    Color color;
-  };
-  struct Glyph {
-    size_t character = 0;
-    Affine map; ///< from em
-    Point at;   ///< where it begins on its baseline
-    double advance = 0, angle = 0, size = 0;
-    bool hidden = false; ///< beyond a track's ends
-    GpgpSvgGlyph metrics{};
-    std::vector<Part> parts;
-  };
-  pugi::xml_node node;
-  std::string bytes;
-  std::string marks; ///< of direction, before the next character
-  std::vector<Run> runs;
-  std::vector<Element> elements;
-  std::vector<Character> characters;
-  std::vector<Track> tracks;
-  std::vector<Glyph> glyphs;
-  Box box; ///< of all glyphs' cells
-  bool afterSpace = true, vertical = false;
-  Point at;         ///< the current text position
-  double along = 0; ///< the same on a path, from where its text begins
-};
 
 /// Appends what an element holds, and what is in it.
 void Importer::collectText(pugi::xml_node node, const State& state, bool preserves, Text& text) {
@@ -156,6 +50,7 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
   const bool keeps = state.style.text.space == Space::AsXml ? preserves : state.style.text.space == Space::Preserve;
   const size_t own = text.runs.size(), element = text.elements.size();
   const BidiMarks marks = bidiMarksOf(state.style.text);
+  const bool isCopy = document_.name(node) == "tref"; // which has no words of its own
   text.marks += marks.before;
   text.runs.back().state = state;
   text.elements.push_back({node, state, text.characters.size(), 0});
@@ -180,7 +75,7 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
       text.afterSpace = isSpace && !keeps;
     }
   };
-  if (document_.name(node) == "tref") { // SVG 1.1, 10.6: all characters of another element
+  if (isCopy) { // SVG 1.1, 10.6: all characters of another element
     const pugi::xml_node target = document_.find(trim(hrefOf(node).value()));
     if (!target) reporter_.ignored(document_.place(node), "<tref> refers to an element that does not exist");
     std::string all;
@@ -198,7 +93,7 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
   for (const pugi::xml_node child : node.children()) {
     if (stopped_) break;
     if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata) {
-      append(child.value());
+      if (!isCopy) append(child.value());
       continue;
     }
     const std::string_view name = document_.name(child);
@@ -218,7 +113,6 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
     std::optional<State> entered = enter(child, state);
     if (!entered || !isFor(child)) continue;
     State& inner = *entered;
-    inner.opacity *= inner.style.opacity;
     reportUnsupported(child, name, inner.style);
     const struct {
       bool is;
@@ -239,9 +133,9 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
     lengths.width = lengths.height = lengths.fontSize = inner.style.fontSize;
     double length = 0;
     if (shift == "sub")
-      next.shift -= 0.2 * inner.style.fontSize;
+      ++next.subscripts;
     else if (shift == "super")
-      next.shift += 0.4 * inner.style.fontSize;
+      ++next.superscripts;
     else if (!shift.empty() && shift != "baseline" && parseLength(shift, lengths, LengthAxis::X, length))
       next.shift += length;
     if (name == "textPath") {
@@ -332,8 +226,8 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     const Text::Run& run = text.runs[c.run];
     const TextStyle& style = run.state.style.text;
     spans.push_back({static_cast<uint32_t>(c.begin - from), end, style.families.c_str(), run.language.c_str(),
-                     static_cast<float>(run.state.style.fontSize), static_cast<float>(style.weight),
-                     static_cast<float>(style.letterSpacing), style.italic, style.smallCaps, style.unkerned});
+                     static_cast<float>(run.state.style.fontSize), static_cast<float>(style.weight), 0, style.italic,
+                     style.smallCaps, style.unkerned, style.letterSpacing != 0});
   }
   const Text::Run& run = text.runs[begin.run];
   const TextStyle& style = run.state.style.text;
@@ -343,10 +237,10 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
   const GpgpSvgText line{text.bytes.data() + from, static_cast<uint32_t>(to - from), spans.data(),
                          static_cast<uint32_t>(spans.size()), style.rightToLeft};
   struct Taken {
+    Importer& importer;
     std::vector<Text::Glyph> glyphs;
-    std::vector<GpgpSvgGlyph> given;
     bool incomplete = false;
-  } taken;
+  } taken{*this, {}, false};
   const GpgpResult result = text_.fn(
       text_.userData, &line,
       [](void* user, const GpgpSvgGlyph* glyph) {
@@ -354,16 +248,27 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
         Text::Glyph made;
         for (uint32_t i = 0; i < glyph->pathCount; ++i) {
           const GpgpPath& path = glyph->paths[i];
-          Text::Part part{shapeOfGlyph(path), !glyph->foreground || glyph->foreground[i], {}};
-          into.incomplete |= !part.isForeground && path.gradient;
+          Text::Part part;
+          part.shape = shapeOfGlyph(path);
+          part.isForeground = !glyph->foreground || glyph->foreground[i];
+          if (!part.isForeground && path.gradient) part.gradient = gradientMoved(*path.gradient, Affine{});
           const auto encoded = [](float v) { return srgbFromLinear(static_cast<double>(v)); };
           part.color = {encoded(path.color[0]), encoded(path.color[1]), encoded(path.color[2]),
                         static_cast<double>(path.color[3])};
           made.parts.push_back(std::move(part));
         }
         into.incomplete |= glyph->incomplete != 0;
+        if (glyph->image) {
+          const auto at = [glyph](size_t i) { return static_cast<double>(glyph->imageBox[i]); };
+          Text::Part part;
+          part.isForeground = false;
+          part.picture = into.importer.pictureOfGlyph(*glyph);
+          part.place = {at(2) - at(0), 0, 0, at(3) - at(1), at(0), at(1)};
+          into.incomplete |= !part.picture;
+          if (part.picture) made.parts.push_back(std::move(part));
+        }
         made.metrics = *glyph;
-        made.metrics.paths = nullptr, made.metrics.foreground = nullptr;
+        made.metrics.paths = nullptr, made.metrics.foreground = nullptr, made.metrics.image = nullptr;
         into.glyphs.push_back(std::move(made));
       },
       &taken);
@@ -374,10 +279,11 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
   const Track* track = run.track ? &text.tracks[run.track - 1] : nullptr;
   const bool vertical = text.vertical && !track;
   // Along the line, before it is anchored.
-  double width = 0, shift = 0, down = 0;
-  size_t previous = SIZE_MAX;
+  double width = 0, shift = 0, down = 0, lead = 0;
+  size_t previous = SIZE_MAX, begun = 0;
   std::vector<Point> places;
-  for (Text::Glyph& g : taken.glyphs) {
+  for (size_t k = 0; k < taken.glyphs.size(); ++k) {
+    Text::Glyph& g = taken.glyphs[k];
     const auto place =
         std::upper_bound(text.characters.begin() + static_cast<ptrdiff_t>(first) + 1,
                          text.characters.begin() + static_cast<ptrdiff_t>(last), g.metrics.cluster + from,
@@ -386,14 +292,26 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     g.character = i;
     const Text::Character& c = text.characters[i];
     // A vertical line is one on its side: its way goes down the page, and its underside is on the left.
-    if (i != previous && i != first) shift += vertical ? c.dy : c.dx;
-    if (i != previous) down += vertical ? -c.dx : c.dy;
+    if (i != previous) {
+      shift += vertical ? c.dy : c.dx;
+      down += vertical ? -c.dx : c.dy;
+      g.apart = c.x || c.y || std::fabs(c.dx) > 0 || std::fabs(c.dy) > 0;
+    }
+    if (k == 0) lead = shift; // which does not count as a part of the line
     previous = i;
     g.advance = static_cast<double>(g.metrics.advance);
     g.size = static_cast<double>(g.metrics.size);
     places.push_back({static_cast<double>(g.metrics.x) + shift, static_cast<double>(g.metrics.y) + down});
-    if (g.metrics.advance > 0 && text.bytes[c.offset] == ' ') shift += text.runs[c.run].state.style.text.wordSpacing;
-    width = std::max(width, static_cast<double>(g.metrics.x) + g.advance + shift);
+    width = std::max(width, static_cast<double>(g.metrics.x) + g.advance + shift - lead);
+    const TextStyle& of = text.runs[c.run].state.style.text;
+    const uint32_t character = characterAt(text.bytes, c.offset);
+    if (g.metrics.advance > 0 && isWordSpace(character)) shift += of.wordSpacing;
+    const bool endsCluster = k + 1 < taken.glyphs.size() && taken.glyphs[k + 1].metrics.cluster != g.metrics.cluster;
+    if (g.metrics.cluster != taken.glyphs[begun].metrics.cluster) begun = k;
+    if (!endsCluster || isJoined(character)) continue;
+    const double room = taken.glyphs[begun].advance + of.letterSpacing; // resvg shows no letters that have none
+    for (size_t each = begun; room < 0 && each <= k; ++each) taken.glyphs[each].hidden = true;
+    shift += std::max(of.letterSpacing, -taken.glyphs[begun].advance);
   }
   // Elements that say how long they are, the inner ones first (SVG 2, 11.5).
   std::vector<double> stretches(taken.glyphs.size(), 1);
@@ -404,7 +322,7 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     LengthContext lengths = e.state.lengths;
     lengths.fontSize = e.state.style.fontSize;
     double wanted = 0;
-    if (!parseLength(said.value(), lengths, LengthAxis::X, wanted) || !(wanted > 0)) {
+    if (!parseLength(said.value(), lengths, LengthAxis::X, wanted) || !(wanted >= 0)) {
       noLength(e.node, document_.place(said, 0), "textLength", said.value());
       continue;
     }
@@ -423,7 +341,7 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     if (!(high > low)) continue;
     const bool squeezes = trim(e.node.attribute("lengthAdjust").value()) == "spacingAndGlyphs";
     const double factor = squeezes ? wanted / (high - low) : 1;
-    if (!squeezes && steps == 0) continue;
+    if (squeezes ? !(factor > 0) : steps == 0) continue;
     const double each = squeezes ? 0 : (wanted - (high - low)) / static_cast<double>(steps);
     size_t passed = 0;
     previousOne = SIZE_MAX;
@@ -443,10 +361,7 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
   const double before = style.rightToLeft ? 1 - style.anchor : style.anchor;
   if (track && (begin.x || first == 0 || text.runs[text.characters[first - 1].run].track != run.track))
     text.along = begin.x.value_or(0); // of its path, whatever the current text position is
-  const double left = (track      ? track->offset + text.along + begin.dx
-                       : vertical ? text.at.y + begin.dy
-                                  : text.at.x + begin.dx) -
-                      before * width;
+  const double left = (track ? track->offset + text.along : vertical ? text.at.y : text.at.x) - before * width;
   for (size_t k = 0; k < taken.glyphs.size(); ++k) {
     Text::Glyph& g = taken.glyphs[k];
     const Text::Run& of = text.runs[text.characters[g.character].run];
@@ -460,14 +375,16 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     const std::string_view baseline = !isDominant ? std::string_view(own) : isEdge ? std::string_view() : dominant;
     const bool isCentral =
         vertical && (baseline.empty() || baseline == "auto"); // lines run through the letters' middle
-    const double lower = baselineOffset(isCentral ? "middle" : baseline, g.metrics) * g.size - of.shift + places[k].y;
+    const double raised = of.shift + g.size * (of.superscripts * static_cast<double>(g.metrics.superscript) -
+                                               of.subscripts * static_cast<double>(g.metrics.subscript));
+    const double lower = baselineOffset(isCentral ? "central" : baseline, g.metrics) * g.size - raised + places[k].y;
     const double x = left + places[k].x;
     g.advance *= stretches[k];
     g.angle = text.characters[g.character].rotate * (std::numbers::pi / 180);
     g.at = {x, text.at.y + lower};
-    if (vertical && isUpright(text.bytes, text.characters[g.character].offset)) {
-      const double middle = 0.38 * g.size; // of an ideograph's square, above the baseline
-      g.at = {text.at.x - places[k].y + of.shift - g.advance / 2, x + g.advance / 2 + middle};
+    if (vertical && isUpright(characterAt(text.bytes, text.characters[g.character].offset))) {
+      const double middle = baselineOffset("central", g.metrics) * g.size; // of its square
+      g.at = {text.at.x - places[k].y + raised - g.advance / 2, x + g.advance / 2 + middle};
     } else if (vertical) {
       g.at = {text.at.x - lower, x};
       g.angle += std::numbers::pi / 2;
@@ -475,11 +392,13 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     if (track) {
       Point place;
       double angle = 0;
-      g.hidden = !track->at(x + g.advance / 2, place, angle);
+      g.hidden |= !track->at(x + g.advance / 2, place, angle);
       const double c = std::cos(angle), s = std::sin(angle);
       g.at = place + Point{-c * g.advance / 2 - s * lower, -s * g.advance / 2 + c * lower};
       g.angle += angle;
     }
+    g.line = vertical ? Point{text.at.x - places[k].y + raised, x} : g.at;
+    g.lineAngle = vertical ? std::numbers::pi / 2 : g.angle;
     const double c = std::cos(g.angle), s = std::sin(g.angle);
     g.map = Affine{c, s, -s, c, g.at.x, g.at.y} * Affine{stretches[k] * g.size, 0, 0, g.size, 0, 0};
     if (!g.hidden) {
@@ -491,81 +410,13 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     }
     text.glyphs.push_back(std::move(g));
   }
-  text.along += begin.dx + (1 - style.anchor) * width;
+  text.along += lead + (1 - style.anchor) * width;
   if (track)
     text.at = track->points.empty() ? text.at : track->points.back();
   else if (vertical)
-    text.at = text.at + Point{-down, begin.dy + (style.rightToLeft ? -1 : 1) * (1 - style.anchor) * width};
+    text.at = text.at + Point{-down, lead + (style.rightToLeft ? -1 : 1) * (1 - style.anchor) * width};
   else
-    text.at = text.at + Point{begin.dx + (style.rightToLeft ? -1 : 1) * (1 - style.anchor) * width, down};
-}
-
-/// Runs in painting order: lines below, glyphs, lines through.
-void Importer::paintText(Text& text) {
-  const auto paint = [&](const Text::Run& run, const Shape& shape, const std::optional<Color>& own) {
-    const State& state = run.state;
-    const Style& style = state.style;
-    if (shape.empty() || !style.visible || !(state.opacity > 0)) return;
-    group_ = state.group;
-    if (mode_ == Mode::Clip) return emit(shape, state.transform, style.clipRule, {}, 1, run.node);
-    if (own)
-      return emit(shape, state.transform, GPGP_FILL_NON_ZERO, {*own, nullptr}, style.fillOpacity * state.opacity,
-                  run.node);
-    const Surface surface{state, state.transform, [&text] { return text.box; }};
-    for (const Style::Part part : style.paintOrder) {
-      group_ = state.group;
-      if (part == Style::Part::Fill) {
-        if (const auto ink = resolve(style.fill, surface, run.node, "fill"))
-          emit(shape, state.transform, GPGP_FILL_NON_ZERO, *ink, style.fillOpacity * state.opacity, run.node);
-      } else if (part == Style::Part::Stroke && style.strokeWidth > 0) {
-        if (const auto ink = resolve(style.stroke, surface, run.node, "stroke")) stroke(shape, state, *ink, run.node);
-      }
-    }
-  };
-  for (size_t begin = 0, end = 0; begin < text.glyphs.size() && !stopped_; begin = end) {
-    const size_t of = text.characters[text.glyphs[begin].character].run;
-    const Text::Run& run = text.runs[of];
-    while (end < text.glyphs.size() && text.characters[text.glyphs[end].character].run == of) ++end;
-    const auto decorate = [&](bool through) {
-      for (const Text::Decoration& d : run.decorations)
-        for (const std::string_view kind : {"underline", "overline", "line-through"}) {
-          if ((kind == "line-through") != through || d.kinds.find(kind) == std::string::npos) continue;
-          Shape lines;
-          for (size_t i = begin, next = begin; i < end; i = next) { // glyphs on one straight line have one
-            const Text::Glyph& g = text.glyphs[i];
-            double width = g.advance;
-            for (next = i + 1; next < end && !run.track && g.angle == 0 && !(text.glyphs[next].angle > 0) &&
-                               !(text.glyphs[next].angle < 0) && std::fabs(text.glyphs[next].at.y - g.at.y) < 1e-6;
-                 ++next)
-              width = std::max(width, text.glyphs[next].at.x - g.at.x + text.glyphs[next].advance);
-            if (g.hidden || !(width > 0)) continue;
-            const double thick =
-                static_cast<double>(through ? g.metrics.strikeThickness : g.metrics.underlineThickness);
-            // Other renderers take the positions for those of the middle of the line, which fonts give of its top.
-            const double y = static_cast<double>(through               ? g.metrics.strikePosition
-                                                 : kind == "underline" ? g.metrics.underlinePosition
-                                                                       : -g.metrics.ascent) -
-                             (kind == "overline" ? 0 : thick / 2);
-            append(lines, rectangle(0, g.size * (y - thick / 2), width, g.size * thick, 0, 0, 1),
-                   Affine{std::cos(g.angle), std::sin(g.angle), -std::sin(g.angle), std::cos(g.angle), g.at.x, g.at.y});
-          }
-          paint(text.runs[d.run], lines, std::nullopt);
-        }
-    };
-    decorate(false);
-    Shape all; // of those that have the run's paint, one after another
-    for (size_t i = begin; i < end; ++i) {
-      if (text.glyphs[i].hidden) continue;
-      for (const Text::Part& part : text.glyphs[i].parts) {
-        if (!part.isForeground) paint(run, all, std::nullopt), all = Shape();
-        Shape one;
-        append(part.isForeground ? all : one, part.shape, text.glyphs[i].map);
-        if (!part.isForeground) paint(run, one, part.color);
-      }
-    }
-    paint(run, all, std::nullopt);
-    decorate(true);
-  }
+    text.at = text.at + Point{lead + (style.rightToLeft ? -1 : 1) * (1 - style.anchor) * width, down};
 }
 
 void Importer::drawText(pugi::xml_node node, const State& state) {
