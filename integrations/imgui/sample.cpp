@@ -1,14 +1,14 @@
-// Dear ImGui in a window, all its text by gpgp, with a drawing and a paragraph as widgets beside the demo window.
+// Dear ImGui in a window, drawn by gpgp alone, with a drawing and a paragraph as widgets beside the demo window.
 #include "sample.h"
 #include "gpgp_imgui.hpp"
 #include "gpgp_sdl2.hpp"
 
 #include <SDL.h>
 #include <imgui/backends/imgui_impl_sdl.h>
-#include <imgui/backends/imgui_impl_vulkan.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <stdexcept>
 
 namespace {
 
@@ -17,7 +17,7 @@ using sample::need;
 using sample::Options;
 using sample::take;
 
-constexpr const char* kHelp = R"(gpgp_imgui_sample: Dear ImGui with text and drawings by gpgp
+constexpr const char* kHelp = R"(gpgp_imgui_sample: Dear ImGui drawn by gpgp
 
   --svg FILE       the drawing (default: the HUD of the mini-engine)
   --font FILE      the font of everything (default: DejaVu Sans where it is installed, else ImGui's own)
@@ -76,43 +76,15 @@ struct Content {
     }
     ImGui::SliderFloat("text scale", &ImGui::GetIO().FontGlobalScale, 0.5f, 4.0f);
     const imgui::FrameReport& report = renderer.report();
-    ImGui::Text("%u glyphs in %u pieces and %u layers", report.glyphs, report.pieces, report.layers);
+    ImGui::Text("%u triangles, %u glyphs, %u widgets", report.triangles, report.glyphs, report.widgets);
     ImGui::End();
   }
 };
 
-/// ImGui with its two backends, until it goes.
-struct Toolkit {
-  VkDevice device;
-  VkDescriptorPool pool = VK_NULL_HANDLE;
-
-  Toolkit(sdl2::Device& from, const sdl2::Window& window, const sdl2::Swapchain& swapchain, const sdl2::ColorPass& pass)
-      : device(from.device) {
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1};
-    VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
-    poolInfo.maxSets = poolInfo.poolSizeCount = 1;
-    poolInfo.pPoolSizes = &size;
-    sdl2::check(vkCreateDescriptorPool(device, &poolInfo, nullptr, &pool), "vkCreateDescriptorPool");
-    ImGui_ImplSDL2_InitForVulkan(window.handle());
-    ImGui_ImplVulkan_InitInfo info{};
-    info.Instance = from.instance;
-    info.PhysicalDevice = from.physical;
-    info.Device = from.device;
-    info.QueueFamily = from.family;
-    info.Queue = from.queue;
-    info.DescriptorPool = pool;
-    info.MinImageCount = 2;
-    info.ImageCount = std::max(static_cast<uint32_t>(swapchain.images().size()), 2u);
-    info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
-    info.CheckVkResultFn = [](VkResult result) { sdl2::check(result, "ImGui's renderer"); };
-    ImGui_ImplVulkan_Init(&info, pass.handle());
-  }
-  ~Toolkit() {
-    vkDeviceWaitIdle(device);
-    ImGui_ImplVulkan_Shutdown();
-    ImGui_ImplSDL2_Shutdown();
-    vkDestroyDescriptorPool(device, pool, nullptr);
-  }
+/// ImGui's events from SDL, until it goes.
+struct Events {
+  explicit Events(const sdl2::Window& window) { ImGui_ImplSDL2_InitForVulkan(window.handle()); }
+  ~Events() { ImGui_ImplSDL2_Shutdown(); }
 };
 
 struct UiContext {
@@ -150,19 +122,21 @@ int run(const Options& options) {
     info.physicalDevice = device.physical;
     info.device = device.device;
     info.queueFamily = device.family;
-    info.renderPass = pass.handle();
+    auto target = init<GpgpTargetInfo>();
+    target.renderPass = pass.handle();
+    info.target = &target;
     info.maxWidth = swapchain.maxExtent().width;
     info.maxHeight = swapchain.maxExtent().height;
     imgui::Renderer renderer(info);
-    renderer.useFonts(*ImGui::GetIO().Fonts);
+    if (sample::isThere(options.font)) renderer.useFonts(*ImGui::GetIO().Fonts); // else ImGui's own, a bitmap
+    renderer.createFontTexture(*ImGui::GetIO().Fonts);
     Content content(context, options);
-    Toolkit toolkit(device, window, swapchain, pass);
+    Events events(window);
 
     std::optional<sdl2::Screenshot> screenshot;
     const auto onEvent = [](const SDL_Event& event) { ImGui_ImplSDL2_ProcessEvent(&event); };
     for (uint32_t done = 0; window.pollEvents(onEvent) && (options.frames == 0 || done < options.frames); ++done) {
       VkCommandBuffer commands = frames.begin();
-      if (done == 0) ImGui_ImplVulkan_CreateFontsTexture(commands);
       std::optional<sdl2::Swapchain::Acquired> acquired;
       while (!(acquired = swapchain.acquire(frames.slot()))) {
         swapchain.resize();
@@ -170,17 +144,16 @@ int run(const Options& options) {
       }
       need(context.advance(frames.number()), "gpgpAdvance");
 
-      ImGui_ImplVulkan_NewFrame();
       ImGui_ImplSDL2_NewFrame();
       ImGui::NewFrame();
       ImGui::ShowDemoWindow();
       content.window(renderer);
       ImGui::Render();
 
-      need(renderer.prepare(*ImGui::GetDrawData(), commands, frames.number()), "gpgp::imgui");
+      if (renderer.prepare(*ImGui::GetDrawData(), commands, frames.number()) < 0)
+        throw std::runtime_error("gpgp::imgui: " + renderer.error());
       pass.begin(commands, acquired->index, {0.1f, 0.12f, 0.15f, 1});
-      renderer.use(commands);
-      ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands);
+      need(renderer.draw(commands, frames.number()), "gpgp::imgui");
       vkCmdEndRenderPass(commands);
       const bool last = done + 1 == options.frames && !options.picture.empty();
       if (last) screenshot.emplace(device, swapchain).record(commands, acquired->index);
@@ -190,8 +163,8 @@ int run(const Options& options) {
     }
     frames.finish();
     const imgui::FrameReport& report = renderer.report();
-    std::printf("frame       %u glyphs in %u pieces and %u layers, %u dropped\n", report.glyphs, report.pieces,
-                report.layers, report.dropped);
+    std::printf("frame       %u triangles, %u glyphs, %u widgets, %u textures, %u dropped\n", report.triangles,
+                report.glyphs, report.widgets, report.textures, report.dropped);
     if (screenshot) screenshot->save(options.picture);
   }
   std::printf("device      %s\n", device.properties.deviceName);

@@ -11,6 +11,10 @@
 #include <memory>
 #include <string>
 
+namespace gpgp::integration {
+struct Texture;
+}
+
 namespace gpgp::rmlui {
 
 /// A map of the plane, as gpgpPushTransform takes it. Null pointers are the identity.
@@ -42,7 +46,7 @@ struct State {
 };
 
 /// An image that geometry is painted with; whoever draws the list knows what it is.
-struct Texture;
+using integration::Texture;
 using TexturePointer = std::shared_ptr<Texture>;
 
 /// Colours and positions as RmlUi gives them; premultiplied, sRGB.

@@ -2,8 +2,8 @@
 #include "filters.h"
 #include "gpgp_glyph_cache.hpp"
 #include "gpgp_rmlui.hpp"
+#include "gpgp_textures.hpp"
 #include "text_mesh.h"
-#include "textures.h"
 #include "writer.h"
 
 #include <RmlUi/Core/Log.h>
@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 namespace gpgp::rmlui {
+using integration::Textures;
 namespace {
 
 void check(GpgpResult result, const char* what) {

@@ -132,11 +132,13 @@ void City::makeMaterials() {
     materials_[terminal->bucket] = materialOf(terminal->name, terminal->bucket);
 }
 
+void City::use(gpgp::Grammar grammar) {
+  grammar_ = std::move(grammar); // the old one is destroyed here, and freed when its frames are over
+  makeMaterials();
+}
+
 void City::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
-  if (auto next = watch_ ? watch_->update() : std::nullopt) {
-    grammar_ = std::move(*next); // the old one is destroyed here, and freed when its frames are over
-    makeMaterials();
-  }
+  if (auto next = watch_ ? watch_->update() : std::nullopt) use(std::move(*next));
   auto info = gpgp::init<GpgpSpawnInfo>();
   info.base.tag = frame.current;
   info.base.scratch = gpgp_.scratch();

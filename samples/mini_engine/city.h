@@ -11,6 +11,8 @@ public:
   /// watch: the grammar follows its file while the engine runs.
   City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string& grammarFile, bool watch);
   /// Outside render passes. Nothing is drawn until this has recorded something.
+  /// Another grammar from this frame on; before its uploads.
+  void use(gpgp::Grammar grammar);
   void prepare(VkCommandBuffer commands, const GpgpFrame& frame);
   /// Inside the forward pass.
   void draw(VkCommandBuffer commands, const Camera& camera);

@@ -2,7 +2,9 @@
 #include "engine.h"
 
 #include "level.h"
+#include "live_script.h"
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -10,7 +12,8 @@ namespace mini {
 Engine::Engine(Device& device, Target& target, const EngineOptions& options)
     : device_(device), target_(target), forward_(device, target.format(), target.finalLayout()),
       gpgp_(device, kFramesInFlight),
-      city_(device, gpgp_, forward_, options.dataFolder + "/grammars/building.pga", options.watch),
+      city_(device, gpgp_, forward_,
+            options.live.empty() ? options.dataFolder + "/grammars/building.pga" : options.live, options.watch),
       sight_(device, gpgp_, forward_, levelModel(options.dataFolder)), farther_(options.decoupled.farther),
       eyes_(options.stereo ? 2 : 1), script_(options.inputs), frames_(device, kFramesInFlight) {
   if (options.decoupled.on)
@@ -21,6 +24,10 @@ Engine::Engine(Device& device, Target& target, const EngineOptions& options)
   else
     hud_ = std::make_unique<Hud>(device, gpgp_, forward_, options.dataFolder + "/svg/hud.svg",
                                  options.dataFolder + "/fetched/svg/tiger.svgz");
+  if (!options.live.empty()) {
+    live_ = std::make_unique<LiveGrammar>(gpgp_.context, options.live);
+    panel_ = std::make_unique<LivePanel>(device, gpgp_, forward_, target.format(), options.dataFolder);
+  }
   resize();
 }
 
@@ -46,6 +53,7 @@ Camera Engine::orbit(float angle, float distance, float height, float fieldOfVie
 void Engine::take(const std::vector<Input>& inputs) {
   for (const Input& input : inputs) {
     if (decoupled_ && input.kind == Input::key) decoupled_->key(input.character);
+    if (panel_) panel_->input(input);
     if (!screen_) continue;
     const std::string happened = screen_->input(input);
     if (!script_.empty()) std::printf("input       %s\n", happened.c_str());
@@ -75,7 +83,7 @@ void Engine::run(uint32_t frames) {
 
 void Engine::frame() {
   VkCommandBuffer commands = frames_.begin();
-  if (!screen_ || !screen_->game().paused) ++step_;
+  if (!live_ && (!screen_ || !screen_->game().paused)) ++step_;
   std::optional<Acquired> acquired = target_.acquire(frames_.slot());
   while (!acquired) {
     resize();
@@ -87,6 +95,42 @@ void Engine::frame() {
   target_.keep(commands, *acquired);
   frames_.submit(acquired->available, acquired->rendered);
   target_.present(*acquired);
+}
+
+void Engine::runScript(const std::string& file) {
+  using Clock = std::chrono::steady_clock;
+  for (const LiveCommand& command : readLiveScript(file)) {
+    const uint64_t version = live_->version();
+    const Clock::time_point start = Clock::now();
+    switch (command.kind) {
+    case LiveCommand::frames:
+      for (uint32_t i = 0; i < command.count; ++i) frame();
+      continue;
+    case LiveCommand::set:
+      if (!live_->set(command.name, command.value))
+        throw std::runtime_error(live_->file() + " has no variable " + command.name);
+      break;
+    case LiveCommand::write: saveAs(command.name, live_->file()); break;
+    case LiveCommand::picture:
+      for (uint32_t i = 0; i <= kFramesInFlight; ++i) frame(); // reports are of this state
+      check(vkDeviceWaitIdle(device_.device), "vkDeviceWaitIdle");
+      target_.writePicture(command.name);
+      std::printf("live        %s: %u instances, key hash %08x%08x, errors at %.0f,%.0f to %.0f,%.0f\n",
+                  command.name.c_str(), city_.report().instancesWritten, city_.report().keyHash[1],
+                  city_.report().keyHash[0], static_cast<double>(panel_->errorBox()[0]),
+                  static_cast<double>(panel_->errorBox()[1]), static_cast<double>(panel_->errorBox()[2]),
+                  static_cast<double>(panel_->errorBox()[3]));
+      for (const LiveError& error : live_->errors())
+        std::printf("error       %s: %s\n", error.place().c_str(), error.text.c_str());
+      continue;
+    }
+    uint32_t frames = 0;
+    while (live_->version() == version && ++frames <= 100) frame();
+    check(vkDeviceWaitIdle(device_.device), "vkDeviceWaitIdle");
+    std::printf("change      %s: in the picture after %u frames, %.1f ms; %.1f ms of them to compile\n",
+                command.name.c_str(), frames, std::chrono::duration<double, std::milli>(Clock::now() - start).count(),
+                live_->compileMilliseconds());
+  }
 }
 
 void Engine::comparePaths(uint32_t frames, bool table) {
@@ -153,6 +197,10 @@ void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
   for (uint32_t eye = 0; eye < eyes_; ++eye)
     eyes[eye] = orbit(0.0f, 84.0f, 36.0f, 0.80f, eyes_ == 1 ? 0.0f : (static_cast<float>(eye) - 0.5f) * kEyes);
   if (screen_) screen_->update(eyes);
+  if (live_) {
+    if (auto next = live_->update()) city_.use(std::move(*next)); // what this frame shows
+    panel_->update(*live_, city_.report(), target_.extent());
+  }
   gpgp_.check(gpgp_.context.recordUpload(commands, frames_.number()).code(), "gpgpRecordUpload");
   city_.prepare(commands, frames_.number());
   sight_.prepare(commands, frames_.number(), camera, target_.extent());
@@ -160,6 +208,7 @@ void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
     screen_->prepare(commands, frames_.number());
   else
     hud_->prepare(commands, frames_.number());
+  if (panel_) panel_->prepare(commands, frames_.number());
 
   forward_.begin(commands, acquired.framebuffer);
   const uint32_t eyeWidth = forward_.extent().width / eyes_;
@@ -186,6 +235,7 @@ void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
   sight_.draw(commands, side);
   forward_.setArea(commands, {{0, 0}, extent});
   hud_->draw(commands, frames_.number());
+  if (panel_) panel_->draw(commands, frames_.number());
   vkCmdEndRenderPass(commands);
 
   if (const auto* offscreen = dynamic_cast<const Offscreen*>(&target_)) {
@@ -204,6 +254,7 @@ void Engine::collect() {
   city_.collect();
   if (hud_) hud_->collect();
   if (screen_) screen_->collect();
+  if (panel_) panel_->collect();
   sight_.collect();
 }
 
@@ -211,7 +262,7 @@ bool Engine::allWell() const {
   if (decoupled_) return decoupled_->allWell();
   return city_.report().base.status == GPGP_SUCCESS && city_.reports() > 0 &&
          (screen_ ? screen_->allWell() : hud_->report().base.status == GPGP_SUCCESS && hud_->reports() > 0) &&
-         sight_.report().base.status == GPGP_SUCCESS && sight_.reports() > 0;
+         (!panel_ || panel_->well()) && sight_.report().base.status == GPGP_SUCCESS && sight_.reports() > 0;
 }
 
 void Engine::printSummary() const {

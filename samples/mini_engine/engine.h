@@ -3,6 +3,8 @@
 #include "city.h"
 #include "decoupled.h"
 #include "hud.h"
+#include "live_grammar.h"
+#include "live_panel.h"
 #include "screen.h"
 #include "sight.h"
 #include "target.h"
@@ -17,6 +19,7 @@ struct EngineOptions {
   bool stereo = false;       // for two eyes, side by side
   uint32_t score = 0;        // on it at the beginning
   std::vector<Input> inputs; // for it, before the second frame
+  std::string live;          // a grammar file to edit, with a panel; empty: none
 };
 
 class Engine {
@@ -28,6 +31,8 @@ public:
 
   /// Renders frame after frame until `frames` are done (0: until the window closes), then waits.
   void run(uint32_t frames);
+  /// Live editing by a script (live_script.h). The camera stands still.
+  void runScript(const std::string& file);
   /// Decoupled shading: walks the same path with standard and with exact sampling and prints what displays missed, and
   /// times. table: with the other configurations of the thesis's table 6.1 as well.
   void comparePaths(uint32_t frames, bool table);
@@ -53,6 +58,8 @@ private:
   std::unique_ptr<Screen> screen_; // instead of the HUD
   Sight sight_;
   std::unique_ptr<Decoupled> decoupled_; // instead of city, HUD and sight
+  std::unique_ptr<LiveGrammar> live_;
+  std::unique_ptr<LivePanel> panel_; // with live_
   float farther_ = 1;
   uint32_t eyes_ = 1; // each has its part of the picture, side by side
   uint64_t step_ = 0; // on the camera's path

@@ -2,6 +2,7 @@
 // drawings, and a model whose visible triangles are found and coloured.
 #include "engine.h"
 #include "game.h"
+#include "live_script.h"
 
 #include <array>
 #include <charconv>
@@ -27,6 +28,10 @@ constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a v
   --score N        on the screen at the beginning, at most 9999999
   --stereo         the screen for two eyes, side by side, each half of the picture
   --watch          compile the city's grammar again whenever its file changes; errors are printed and change nothing
+  --live FILE      edit a grammar while it is shown: its variables as sliders, seen in the next frame; a saved file
+                   is seen at once, or its errors over the picture while the old city stays. The camera stands still
+  --script FILE    live: what happens, a line each: set NAME VALUE, write FILE (saves its text as the grammar),
+                   frames N, picture FILE
   --decoupled      object-space shading of the model alone: what gpgp finds visible is shaded in compute, into a
                    record a triangle, and displayed from other poses; shaded.png is the last display
   --method NAME    of decoupled shading: standard, conservative or exact (default); M changes it in a window
@@ -47,7 +52,7 @@ Exit code 0: all is well; 1: an error, a validation message or an exceeded budge
 )";
 
 struct Options {
-  std::string out, device, data = MINI_ENGINE_DATA;
+  std::string out, device, data = MINI_ENGINE_DATA, live, script;
   uint32_t frames = 0;
   VkExtent2D size{1280, 720};
   bool screen = false, stereo = false;
@@ -145,6 +150,10 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
       options.device = value;
     else if (name == "--data")
       options.data = value;
+    else if (name == "--live")
+      options.live = value;
+    else if (name == "--script")
+      options.script = value;
     else if (name == "--input" && parseInputs(value, options.inputs))
       continue;
     else if (name == "--score" && parseNumber(value, options.score) && options.score <= mini::kMaxScore)
@@ -180,6 +189,10 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
   if (options.path && options.method) wrong = "--method beside --path or --table, which choose methods";
   if (options.path && overlay) wrong = "--show overlay beside --path or --table: shading would wait for the reference";
   if (options.watch && options.decoupled.on) wrong = "--watch beside --decoupled, which shows no city";
+  if (!options.live.empty() && (options.watch || options.decoupled.on || options.screen || options.stereo))
+    wrong = "--live beside --watch, --decoupled or --screen";
+  if (!options.script.empty() && (options.live.empty() || options.frames))
+    wrong = "--script without --live, or --frames";
   bool showsOverlay = overlay || (options.window && !options.path);
   for (const mini::Input& input : options.inputs)
     if (input.kind == mini::Input::key && options.decoupled.on) {
@@ -210,6 +223,7 @@ int run(const Options& options) {
 #else
   if (options.window) throw std::runtime_error("built without SDL2; there is no window");
 #endif
+  if (!options.script.empty()) mini::readLiveScript(options.script); // wrong ones are said at once
   bool well = false;
   uint32_t messages = 0;
   {
@@ -222,11 +236,12 @@ int run(const Options& options) {
     {
       mini::Engine engine(device, *target,
                           {options.data, options.watch, options.decoupled, options.screen, options.stereo,
-                           options.score, options.inputs});
+                           options.score, options.inputs, options.live});
+      if (!options.script.empty()) engine.runScript(options.script);
       if (options.path)
         engine.comparePaths(options.frames ? options.frames : 40, options.table);
       else
-        engine.run(options.frames ? options.frames : options.window ? 0 : 3);
+        engine.run(options.frames ? options.frames : options.window && options.script.empty() ? 0 : 3);
       engine.printSummary();
       well = engine.allWell();
     }

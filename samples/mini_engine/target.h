@@ -21,7 +21,7 @@ struct Acquired {
 
 /// What the person did.
 struct Input {
-  enum Kind { key, up, down, enter, move, click } kind = key;
+  enum Kind { key, up, down, enter, move, click, release } kind = key;
   char character = 0; // of a key
   float x = 0, y = 0; // where the pointer moved to, pixels of the picture
 };

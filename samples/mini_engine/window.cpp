@@ -42,6 +42,8 @@ public:
         moved(event.button.x, event.button.y);
         inputs_.push_back({Input::click});
       }
+      if (event.type == SDL_MOUSEBUTTONUP && event.button.button == SDL_BUTTON_LEFT)
+        inputs_.push_back({Input::release});
     });
   }
   void play(const std::vector<Input>& inputs) override {

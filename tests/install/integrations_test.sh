@@ -21,16 +21,18 @@ fi
 {
   cat <<END
 #include <gpgp_imgui.hpp>
-#include <imgui/backends/imgui_impl_vulkan.h>
+#include <imgui.h>
 using namespace gpgp;
 GpgpResult frameOf(GpgpContext context, VkPhysicalDevice physicalDevice, VkDevice device, uint32_t queueFamily,
-                   VkRenderPass renderPass, VkCommandBuffer commands, GpgpFrame frame, GpgpAsset gauge, GpgpLayout layout) {
+                   VkRenderPass renderPass, VkCommandBuffer commands, GpgpFrame frame, GpgpAsset gauge, GpgpLayout layout,
+                   VkImageView view, VkSampler sampler) {
   VkRenderPassBeginInfo passBegin{};
 END
   block imgui 1
   block imgui 2
   echo 'const uint32_t width = 1, height = 1;'
   block imgui 3
+  block imgui 4
   echo 'return GPGP_SUCCESS; }'
   # Without a device it says what it needs.
   echo 'int main() { try { imgui::Renderer renderer({}); } catch (const std::exception&) { return 0; } return 1; }'

@@ -1,225 +1,18 @@
-// gpgp::imgui, drawn into an image by ImGui's own Vulkan renderer under the validation layer: beside ImGui's look,
-// under other windows, clipped, at scales, within budgets. GPGP_IMGUI_PICTURES=FOLDER writes what is compared.
-#include "gpgp_imgui.hpp"
-#include "host/picture.h"
-#include "stage.h"
+// gpgp::imgui's text and widgets: beside ImGui's look, under other windows, clipped, at scales, within budgets, under
+// the validation layer.
+#include "imgui_stage.h"
 
-#include <gtest/gtest.h>
-#include <imgui/backends/imgui_impl_vulkan.h>
-#include <imgui_internal.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
-#include <functional>
 #include <set>
 
 namespace {
 
 using namespace gpgp;
-constexpr uint32_t kWidth = 640, kHeight = 480;
-
-/// With textures of ImGui's: shared by all tests.
-struct Stage : test::PassStage {
-  VkDescriptorPool pool = VK_NULL_HANDLE;
-
-  explicit Stage(VkFormat f = VK_FORMAT_R8G8B8A8_UNORM)
-      : PassStage(f, kWidth, kHeight, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) {
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 8};
-    VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
-    poolInfo.maxSets = 8;
-    poolInfo.poolSizeCount = 1;
-    poolInfo.pPoolSizes = &size;
-    sdl2::check(vkCreateDescriptorPool(device.device, &poolInfo, nullptr, &pool), "pool");
-  }
-  ~Stage() {
-    vkDeviceWaitIdle(device.device);
-    vkDestroyDescriptorPool(device.device, pool, nullptr);
-  }
-};
-
-std::unique_ptr<Stage> stage;
-
-/// An ImGui context with its Vulkan renderer, and with gpgp's where `byGpgp` is set.
-struct Screen {
-  ImGuiContext* context = ImGui::CreateContext();
-  std::unique_ptr<imgui::Renderer> renderer;
-  GpgpResult prepared = GPGP_SUCCESS;
-
-  explicit Screen(bool byGpgp, float fontSize = 13, uint32_t maxLayers = 4, const char* emoji = nullptr) {
-    ImGui::SetCurrentContext(context);
-    ImGuiIO& io = ImGui::GetIO();
-    io.IniFilename = nullptr;
-    io.DisplaySize = {kWidth, kHeight};
-    ImFontConfig config;
-    config.SizePixels = fontSize;
-    config.OversampleH = 3;
-    io.Fonts->AddFontFromFileTTF(GPGP_TEST_DATA "/fetched/fonts/DejaVuSans.ttf", fontSize, &config);
-    static const ImWchar drinks[] = {0x2615, 0x2615, 0};
-    config.MergeMode = true;
-    if (emoji) io.Fonts->AddFontFromFileTTF(emoji, fontSize, &config, drinks);
-    if (byGpgp) {
-      imgui::RendererInfo info;
-      info.context = stage->context;
-      info.physicalDevice = stage->device.physical;
-      info.device = stage->device.device;
-      info.queueFamily = stage->device.family;
-      info.renderPass = stage->pass;
-      info.maxWidth = kWidth;
-      info.maxHeight = kHeight;
-      info.maxLayers = maxLayers;
-      info.srgbTarget = stage->format == VK_FORMAT_R8G8B8A8_SRGB;
-      renderer = std::make_unique<imgui::Renderer>(info);
-      renderer->useFonts(*io.Fonts);
-    }
-    ImGui_ImplVulkan_InitInfo info{};
-    info.Instance = stage->device.instance;
-    info.PhysicalDevice = stage->device.physical;
-    info.Device = stage->device.device;
-    info.QueueFamily = stage->device.family;
-    info.Queue = stage->device.queue;
-    info.DescriptorPool = stage->pool;
-    info.MinImageCount = info.ImageCount = 2;
-    info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
-    ImGui_ImplVulkan_Init(&info, stage->pass);
-    VkCommandBuffer commands = stage->frames.begin();
-    ImGui_ImplVulkan_CreateFontsTexture(commands);
-    EXPECT_EQ(stage->context.advance(stage->frames.number()), GPGP_SUCCESS);
-    stage->frames.submit();
-    vkDeviceWaitIdle(stage->device.device);
-    ImGui_ImplVulkan_DestroyFontUploadObjects();
-  }
-  ~Screen() {
-    vkDeviceWaitIdle(stage->device.device);
-    ImGui::SetCurrentContext(context);
-    ImGui_ImplVulkan_Shutdown();
-    ImGui::DestroyContext(context);
-  }
-
-  /// ImGui takes a frame to size its windows: the picture is the second's.
-  host::Picture render(const std::function<void()>& ui, int frames = 2) {
-    ImGui::SetCurrentContext(context);
-    for (int i = 0; i < frames; ++i) frame(ui);
-    host::Picture picture{kWidth, kHeight, std::vector<uint8_t>(size_t{kWidth} * kHeight * 4)};
-    vkDeviceWaitIdle(stage->device.device);
-    std::memcpy(picture.rgba.data(), stage->mapped, picture.rgba.size());
-    for (size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;
-    return picture;
-  }
-  void frame(const std::function<void()>& ui) {
-    ImGui_ImplVulkan_NewFrame();
-    ImGui::GetIO().DeltaTime = 1.0f / 60;
-    ImGui::NewFrame();
-    ui();
-    ImGui::Render();
-    VkCommandBuffer commands = stage->frames.begin();
-    EXPECT_EQ(stage->context.advance(stage->frames.number()), GPGP_SUCCESS);
-    if (renderer) {
-      prepared = renderer->prepare(*ImGui::GetDrawData(), commands, stage->frames.number());
-      renderer->use(commands);
-    }
-    VkClearValue clear{};
-    clear.color = {{0.45f, 0.55f, 0.60f, 1}};
-    VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
-    begin.renderPass = stage->pass;
-    begin.framebuffer = stage->framebuffer;
-    begin.renderArea.extent = {kWidth, kHeight};
-    begin.clearValueCount = 1;
-    begin.pClearValues = &clear;
-    vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
-    ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands);
-    vkCmdEndRenderPass(commands);
-    VkBufferImageCopy copy{};
-    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    copy.imageExtent = {kWidth, kHeight, 1};
-    vkCmdCopyImageToBuffer(commands, stage->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, stage->buffer, 1, &copy);
-    VkMemoryBarrier toHost{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
-    toHost.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
-    toHost.dstAccessMask = VK_ACCESS_HOST_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
-    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
-                         VK_PIPELINE_STAGE_HOST_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &toHost, 0, nullptr, 0,
-                         nullptr);
-    stage->frames.submit();
-  }
-};
-
-/// A page of 100 x 100 with a red disc of radius 50 on a blue square.
-Drawing makeDrawing() {
-  static const char svg[] = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>"
-                            "<rect width='100' height='100' fill='#2040a0'/><circle cx='50' cy='50' r='50' "
-                            "fill='#c03020'/></svg>";
-  auto source = init<GpgpSvgSource>();
-  source.name = "disc";
-  source.data = svg;
-  source.size = sizeof svg - 1;
-  const Result<Blob> blob = compileSvg(source);
-  auto info = init<GpgpDrawingCreateInfo>();
-  info.data = blob->data();
-  info.size = blob->size();
-  return *Drawing::create(stage->context, info);
-}
-
-using Color = std::array<int, 3>;
-Color at(const host::Picture& picture, uint32_t x, uint32_t y) {
-  const uint8_t* p = &picture.rgba[(size_t{y} * picture.width + x) * 4];
-  return {p[0], p[1], p[2]};
-}
-/// The pixels of a rectangle that differ by more than `tolerance` in a channel.
-uint32_t different(const host::Picture& a, const host::Picture& b, uint32_t left, uint32_t top, uint32_t right,
-                   uint32_t bottom, int tolerance = 0) {
-  uint32_t count = 0;
-  for (uint32_t y = top; y < bottom; ++y)
-    for (uint32_t x = left; x < right; ++x)
-      for (size_t c = 0; c < 3; ++c)
-        if (std::abs(at(a, x, y)[c] - at(b, x, y)[c]) > tolerance) {
-          ++count;
-          break;
-        }
-  return count;
-}
-void keep(const host::Picture& picture, const char* name) {
-  if (const char* folder = std::getenv("GPGP_IMGUI_PICTURES"))
-    host::writePng(std::string(folder) + "/" + name + ".png", picture);
-}
-
-struct ImGuiTest : testing::Test {
-  static void SetUpTestSuite() {
-    stage = std::make_unique<Stage>();
-    gpgpScreen = std::make_unique<Screen>(true);
-  }
-  static void TearDownTestSuite() {
-    gpgpScreen.reset();
-    stage.reset();
-  }
-  void TearDown() override {
-    EXPECT_EQ(stage->device.validationMessages(), 0u);
-    for (const std::string& message : stage->messages) ADD_FAILURE() << message;
-    stage->messages.clear();
-    GpgpCanvasReport report = GPGP_CANVAS_REPORT_INIT; // only so many are kept
-    while (gpgpGetCanvasReport(screen.renderer->canvas(), &report) == GPGP_SUCCESS) {
-    }
-  }
-  inline static std::unique_ptr<Screen> gpgpScreen;
-  Screen& screen = *gpgpScreen;
-};
-
-void demo(bool widgets) {
-  const char* name = "Dear ImGui Demo";
-  ImGui::ShowDemoWindow();
-  ImGui::SetWindowPos(name, {10, 10});
-  ImGui::SetWindowSize(name, {620, 460});
-  ImGuiWindow* window = ImGui::FindWindowByName(name);
-  for (const char* header : {"Widgets", "Basic", "Color/Picker Widgets"})
-    window->StateStorage.SetInt(window->GetID(header), widgets ? 1 : 0);
-  window->StateStorage.SetInt(window->GetID("Help"), widgets ? 0 : 1);
-  ImGui::SetScrollY(window, widgets ? 110.0f : 0.0f);
-}
+using namespace gpgp::test;
 
 /// ImGui's own window of everything: laid out to the pixel as with ImGui's glyphs, nothing of which is drawn.
 TEST_F(ImGuiTest, DemoWindowLooksAsImGuisOwn) {
-  Screen own(false);
+  Screen own({.byGpgp = false});
   for (const bool widgets : {false, true}) { // its help, and widgets of all kinds
     const std::string name = widgets ? "demo_widgets" : "demo";
     const auto ui = [&] { demo(widgets); };
@@ -227,18 +20,6 @@ TEST_F(ImGuiTest, DemoWindowLooksAsImGuisOwn) {
     EXPECT_EQ(screen.prepared, GPGP_SUCCESS);
     EXPECT_EQ(screen.renderer->report().dropped, 0u);
     EXPECT_GT(screen.renderer->report().glyphs, 300u);
-    EXPECT_LE(screen.renderer->report().layers, 2u);
-    uint32_t left = 0;
-    const ImDrawData& data = *ImGui::GetDrawData();
-    for (int i = 0; i < data.CmdListsCount; ++i) {
-      const ImDrawList& list = *data.CmdLists[i];
-      for (const ImDrawCmd& command : list.CmdBuffer)
-        for (unsigned k = 0; k < command.ElemCount; ++k) {
-          const auto index = list.IdxBuffer[static_cast<int>(command.IdxOffset + k)];
-          left += list.VtxBuffer[static_cast<int>(command.VtxOffset + index)].uv.x > 1 ? 1 : 0;
-        }
-    }
-    EXPECT_EQ(left, 0u) << "glyphs that ImGui would draw";
     keep(ours, (name + "_gpgp").c_str());
     keep(theirs, (name + "_imgui").c_str());
     const host::PictureDifference difference = host::compare(ours, theirs);
@@ -271,8 +52,7 @@ TEST_F(ImGuiTest, WindowsCoverTextAndWidgetsBelow) {
   const host::Picture alone = screen.render(above), together = screen.render(both, 3);
   keep(together, "covered");
   EXPECT_EQ(screen.renderer->report().dropped, 0u);
-  EXPECT_EQ(screen.renderer->report().layers, 2u);
-  // Below the title bar, whose colour tells the focus. Another layer is elsewhere in the canvas: areas round otherwise.
+  // Below the title bar, whose colour tells the focus.
   EXPECT_EQ(different(alone, together, 151, 119, 399, 299, 1), 0u);
   EXPECT_GT(different(alone, together, 50, 50, 149, 299), 1000u);
 }
@@ -296,7 +76,7 @@ TEST_F(ImGuiTest, ADrawingKeepsItsBoxAndColoursAndIsClipped) {
   keep(with, "clipped");
   EXPECT_EQ(at(with, 72, 72), (Color{0x20, 0x40, 0xa0}));
   EXPECT_EQ(at(with, 112, 112), (Color{0xc0, 0x30, 0x20}));
-  EXPECT_EQ(at(with, 250, 250), (Color{10, 200, 30})) << "ImGui draws on after the callback";
+  EXPECT_EQ(at(with, 250, 250), (Color{10, 200, 30})) << "ImGui draws on after the widget";
   EXPECT_EQ(different(without, with, 0, 0, kWidth, 70), 0u);
   EXPECT_EQ(different(without, with, 120, 0, kWidth, kHeight), 0u);
   EXPECT_EQ(different(without, with, 0, 120, kWidth, kHeight), 0u);
@@ -310,7 +90,7 @@ TEST_F(ImGuiTest, TextIsSharpAtEveryScale) {
                                             "Sharp & go");
   };
   const host::Picture ours = screen.render(large);
-  Screen small(false), exact(false, 78);
+  Screen small({.byGpgp = false}), exact({.byGpgp = false, .fontSize = 78});
   const host::Picture stretched = small.render(large), wanted = exact.render(large);
   keep(ours, "large_gpgp");
   keep(stretched, "large_imgui");
@@ -377,7 +157,7 @@ TEST_F(ImGuiTest, LayoutsAreWidgets) {
   const GpgpLayoutInfo info = *layout.info();
   EXPECT_GE(info.lineCount, 3u);
   EXPECT_GT(below, info.height + 20);
-  EXPECT_EQ(screen.renderer->report().layers, 1u);
+  EXPECT_EQ(screen.renderer->report().widgets, 1u);
   uint32_t white = 0;
   for (uint32_t y = 30; y < 30 + static_cast<uint32_t>(info.height); ++y)
     for (uint32_t x = 10; x < 300; ++x) white += at(picture, x, y) == Color{255, 255, 255} ? 1 : 0;
@@ -444,7 +224,7 @@ TEST_F(ImGuiTest, LinesOfLayoutsAreAsThickAsTheyAre) {
 TEST_F(ImGuiTest, GlyphsThatArePicturesAreShown) {
   const std::string file = GPGP_TEST_DATA "/fetched/fonts/NotoColorEmoji.ttf";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file << ": run tests/data/fetch.sh";
-  Screen emoji(true, 20, 4, file.c_str());
+  Screen emoji({.fontSize = 20, .emoji = file.c_str()});
   auto fontInfo = init<GpgpFontCreateInfo>();
   fontInfo.filePath = file.c_str();
   Font font = *Font::create(fontInfo);
@@ -480,7 +260,6 @@ TEST_F(ImGuiTest, GlyphsThatArePicturesAreShown) {
   emoji.render([&] { emoji.renderer->addText(*ImGui::GetForegroundDrawList(), crowd, {10, 10}); });
   EXPECT_EQ(emoji.renderer->report().glyphs, 1024u);
   EXPECT_EQ(emoji.renderer->report().dropped, 1100u - 1024u);
-  EXPECT_EQ(emoji.renderer->report().layers, 1u);
   const auto coloured = [&](uint32_t left, uint32_t top, uint32_t right, uint32_t bottom) {
     uint32_t count = 0;
     for (uint32_t y = top; y < bottom; ++y)
@@ -503,32 +282,61 @@ TEST_F(ImGuiTest, GlyphsThatArePicturesAreShown) {
   emoji.renderer->forget(font);
 }
 
-TEST_F(ImGuiTest, WhatFindsNoLayerIsCountedAndTheRestIsDrawn) {
-  Screen one(true, 13, 1);
-  const auto twice = [] {
+/// One piece of text over another, under a box, over a box: all in the order of the list.
+TEST_F(ImGuiTest, TextLiesBetweenWhatLiesBelowAndAboveIt) {
+  const host::Picture picture = screen.render([] {
     ImDrawList& list = *ImGui::GetForegroundDrawList();
-    list.AddText({20, 20}, IM_COL32(255, 255, 255, 255), "below");
-    list.AddRectFilled({10, 10}, {100, 40}, IM_COL32(0, 0, 0, 255));
-    list.AddText({20, 20}, IM_COL32(255, 255, 255, 255), "above");
-    list.AddText({200, 200}, IM_COL32(255, 255, 255, 255), "elsewhere");
-  };
-  one.render(twice);
-  EXPECT_EQ(one.prepared, GPGP_SUCCESS);
-  EXPECT_EQ(one.renderer->report().layers, 1u);
-  EXPECT_EQ(one.renderer->report().dropped, 14u); // the second piece has both words
-  EXPECT_EQ(one.renderer->report().glyphs, 5u);
-  ImGui::SetCurrentContext(screen.context);
-  screen.render(twice);
-  EXPECT_EQ(screen.renderer->report().layers, 2u);
-  EXPECT_EQ(screen.renderer->report().glyphs, 19u);
+    for (int i = 0; i < 12; ++i) {
+      const float y = 10 + 30.0f * static_cast<float>(i);
+      list.AddText(ImGui::GetFont(), 26, {20, y}, IM_COL32(255, 0, 0, 255), "below");
+      list.AddRectFilled({10, y}, {60, y + 26}, IM_COL32(0, 0, 0, 255));
+      list.AddText(ImGui::GetFont(), 26, {20, y}, IM_COL32(0, 255, 0, 255), "above");
+    }
+  });
+  keep(picture, "order");
+  EXPECT_EQ(screen.renderer->report().dropped, 0u);
+  EXPECT_EQ(screen.renderer->report().glyphs, 120u);
+  for (uint32_t i = 0; i < 12; ++i) {
+    uint32_t red = 0, green = 0, redBelow = 0;
+    for (uint32_t y = 10 + 30 * i; y < 36 + 30 * i; ++y)
+      for (uint32_t x = 10; x < 120; ++x) {
+        const Color color = at(picture, x, y);
+        (x < 60 ? redBelow : red) += color[0] > 200 && color[1] < 60;
+        green += color[1] > 200 && color[0] < 60;
+      }
+    EXPECT_EQ(redBelow, 0u) << i;
+    EXPECT_GT(red, 5u) << i;
+    EXPECT_GT(green, 50u) << i;
+  }
+}
+
+/// Text that ImGui cuts itself, between pixels: by texture coordinates, not by a clip rectangle.
+TEST_F(ImGuiTest, TextThatImGuiCutsIsCut) {
+  const ImVec4 cut{30, 104, 71.5f, 140};
+  const host::Picture picture = screen.render([&] {
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    list.AddRectFilled({0, 0}, {300, 200}, IM_COL32(0, 0, 0, 255));
+    list.AddText(ImGui::GetFont(), 40, {10, 90}, IM_COL32(255, 255, 255, 255), "WWWW", nullptr, 0, &cut);
+  });
+  keep(picture, "cut");
+  uint32_t inside = 0;
+  for (uint32_t y = 60; y < 190; ++y)
+    for (uint32_t x = 0; x < 250; ++x) {
+      const bool in = x >= 30 && x < 72 && y >= 104 && y < 140;
+      inside += in && at(picture, x, y)[0] > 200;
+      if (!in) {
+        EXPECT_EQ(at(picture, x, y), (Color{0, 0, 0})) << x << ", " << y;
+      }
+    }
+  EXPECT_GT(inside, 200u);
 }
 
 /// ImGui's colours are linear then, and the image encodes all of them; a drawing has its own colours.
 TEST_F(ImGuiTest, ImagesThatEncodeSrgb) {
-  auto srgb = std::make_unique<Stage>(VK_FORMAT_R8G8B8A8_SRGB);
+  auto srgb = std::make_unique<ImGuiStage>(VK_FORMAT_R8G8B8A8_SRGB);
   std::swap(stage, srgb);
   {
-    Screen byGpgp(true), own(false);
+    Screen byGpgp({}), own({.byGpgp = false});
     Drawing drawing = makeDrawing();
     const auto ui = [&](bool both) {
       ImGui::SetNextWindowPos({10, 10});
@@ -565,11 +373,11 @@ TEST_F(ImGuiTest, FramesMayBeEmptySkippedOrRepeated) {
     ImGui::Render();
   }
   const host::Picture once = screen.render(ui);
-  EXPECT_EQ(screen.renderer->report().pieces, 2u);
+  EXPECT_EQ(screen.renderer->report().widgets, 1u);
   VkCommandBuffer commands = stage->frames.begin();
   EXPECT_EQ(stage->context.advance(stage->frames.number()), GPGP_SUCCESS);
   EXPECT_EQ(screen.renderer->prepare(*ImGui::GetDrawData(), commands, stage->frames.number()), GPGP_SUCCESS);
-  EXPECT_EQ(screen.renderer->report().pieces, 2u);
+  EXPECT_EQ(screen.renderer->report().widgets, 1u);
   EXPECT_EQ(screen.renderer->report().glyphs, 4u);
   stage->frames.submit();
   EXPECT_EQ(at(once, 150, 150), (Color{0xc0, 0x30, 0x20}));
@@ -602,6 +410,7 @@ TEST_F(ImGuiTest, AFramebufferBeyondTheLimitsIsRefusedAndCanBeMadeRoomFor) {
     ImGui::Render();
     given = sizes();
     EXPECT_EQ(prepare(), GPGP_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(screen.renderer->error().find("maxWidth"), std::string::npos) << screen.renderer->error();
     EXPECT_EQ(sizes(), given);
     EXPECT_EQ(screen.renderer->report().glyphs, 0u);
   }
@@ -611,7 +420,8 @@ TEST_F(ImGuiTest, AFramebufferBeyondTheLimitsIsRefusedAndCanBeMadeRoomFor) {
   screen.renderer->resize(kWidth, kHeight + 1);
   EXPECT_EQ(prepare(), GPGP_SUCCESS);
   EXPECT_EQ(screen.renderer->report().glyphs, 4u);
-  EXPECT_NE(sizes(), given);
+  EXPECT_EQ(screen.renderer->error(), "");
+  EXPECT_EQ(sizes(), given);
   ImGui::GetIO().DisplaySize = {kWidth, kHeight};
   EXPECT_EQ(screen.render(ui).rgba, before.rgba); // smaller again
 }

@@ -9,4 +9,5 @@ layout(push_constant) uniform Draw {
   vec4 columns[6]; // three for each view
   uvec4 size;      // width, height, row stride
   uvec2 begins;    // of each view: the column at which its part begins
+  uint encode;     // 1: to sRGB, which is then multiplied by alpha
 };

@@ -3,6 +3,7 @@
 #include "cli/shared/painter.h"
 #include "cli/spawn/fit_scorer.h"
 #include "cli/spawn/grammar_source.h"
+#include "cli/spawn/measures.h"
 #include "cli/spawn/scene_picture.h"
 #include "cli/spawn/spawned_triangles.h"
 #include "core/suggest.h"
@@ -105,20 +106,8 @@ void addMeasure(const std::string& text, const spawn::Graph& graph, Wanted& want
   if (colon == std::string::npos || equals == std::string::npos) throw wrong("expected TERMINAL:FACTORS=VALUE");
   if (wanted.measures.size() == GPGP_MAX_MEASURES)
     throw wrong("there are at most " + std::to_string(GPGP_MAX_MEASURES) + " measures");
-  GpgpMeasure measure{GPGP_ALL_TERMINALS, 0};
-  const std::string name = text.substr(0, colon), factors = text.substr(colon + 1, equals - colon - 1);
-  core::Suggestion suggestion(name);
-  for (uint32_t t = 0; t < graph.terminals.size(); ++t) {
-    suggestion.offer(graph.nameAt(graph.terminals[t].name));
-    if (name == graph.nameAt(graph.terminals[t].name)) measure.terminal = t;
-  }
-  if (measure.terminal == GPGP_ALL_TERMINALS && name != "all")
-    throw wrong("the grammar has no terminal \"" + name + "\"" + suggestion.text());
-  for (const char factor : factors != "count" ? factors : std::string()) {
-    const size_t bit = std::string("xyza").find(factor);
-    if (bit == std::string::npos) throw wrong("FACTORS are letters of x, y, z and a (the attribute), or count");
-    measure.factors |= 1u << bit;
-  }
+  const GpgpMeasure measure =
+      measureNamed(text.substr(0, colon), text.substr(colon + 1, equals - colon - 1), graph, text);
   const auto value = numberIn(text.substr(equals + 1));
   if (!value) throw wrong("expected a number");
   const size_t m = wanted.measures.size();
@@ -160,16 +149,8 @@ void addSilhouette(const FitOptions& options, Wanted& wanted) {
 /// What the CPU measures of an axiom, and the cells that it occupies.
 GpgpAxiomMeasures onCpu(const FitOptions& options, const BakedGraph& grammar, const Wanted& wanted,
                         const GpgpAxiom& axiom, std::vector<uint32_t>& cells) {
-  const GpgpMeasureInfo info = wanted.info();
-  const auto measuring = spawn::measuringOf(info, static_cast<uint32_t>(grammar.graph.terminals.size()));
-  if (!measuring) throw Failure(measuring.error().text);
-  spawn::DeriveOptions how;
-  if (options.maxDepth) how.maxDepth = options.maxDepth;
-  const spawn::Derivation all = spawn::derive(grammar.words, std::span(&axiom, 1), how);
-  std::array<uint32_t, shader::kMeasuredWords> words{};
-  cells.assign(std::max<size_t>(wanted.bits.size(), 1), 0);
-  for (const GpgpInstance& instance : all.instances) spawn::measure(*measuring, instance, words.data(), cells.data());
-  return spawn::finishMeasures(*measuring, wanted.bits.data(), words.data(), cells.data());
+  return measureOnCpu(grammar.words, wanted.info(), static_cast<uint32_t>(grammar.graph.terminals.size()), axiom,
+                      options.maxDepth, nullptr, cells);
 }
 
 /// Cells of 4 x 4 pixels: grey where target and axiom agree, red where something is missing, blue where it is too much.

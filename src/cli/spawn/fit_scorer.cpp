@@ -9,8 +9,10 @@ namespace {
 constexpr uint32_t kMostShapes = 1u << 22, kFirstTerminals = 131072, kRecordBytes = 96;
 }
 
-FitScorer::FitScorer(Session& session, const BakedGraph& grammar, const GpgpMeasureInfo& measures, uint32_t maxDepth)
-    : session_(session), measures_(measures), occupancyWords_(spawn::gridWords(measures)), maxDepth_(maxDepth) {
+FitScorer::FitScorer(Session& session, const BakedGraph& grammar, const GpgpMeasureInfo& measures, uint32_t maxDepth,
+                     const GpgpSpawnCamera* camera)
+    : session_(session), measures_(measures), camera_(camera), occupancyWords_(spawn::gridWords(measures)),
+      maxDepth_(maxDepth) {
   const uint32_t range = session.device().properties().limits.maxStorageBufferRange;
   mostTerminals_ = std::min(range / kRecordBytes, 1u << 24);
   maxTerminals_ = std::min(kFirstTerminals, mostTerminals_);
@@ -50,6 +52,7 @@ std::vector<GpgpAxiomMeasures> FitScorer::measure(const std::vector<GpgpAxiom>& 
     info.hostAxioms = axioms.data() + all.size();
     info.axiomCount = static_cast<uint32_t>(std::min<size_t>(axioms.size() - all.size(), mostAxioms_));
     info.measures = &measures_;
+    info.camera = camera_;
     const auto measured = session_.measure(
         *spawner_, "fit", 1, [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
           info.base = base;

@@ -12,8 +12,9 @@ namespace gpgp::cli {
 
 class FitScorer {
 public:
-  /// measures must outlive it.
-  FitScorer(Session& session, const BakedGraph& grammar, const GpgpMeasureInfo& measures, uint32_t maxDepth);
+  /// measures and camera must outlive it.
+  FitScorer(Session& session, const BakedGraph& grammar, const GpgpMeasureInfo& measures, uint32_t maxDepth,
+            const GpgpSpawnCamera* camera = nullptr);
 
   /// Of each axiom. Budgets grow until all fit, or a recording takes fewer axioms. Throws Failure where not even one
   /// axiom fits.
@@ -29,6 +30,7 @@ private:
 
   Session& session_;
   const GpgpMeasureInfo measures_;
+  const GpgpSpawnCamera* camera_;
   const uint32_t occupancyWords_, maxDepth_;
   uint32_t maxTerminals_, maxShapes_ = 131072, mostAxioms_ = 4096;
   uint32_t mostTerminals_; ///< that this device binds

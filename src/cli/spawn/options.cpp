@@ -76,6 +76,12 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
       ->allow_extra_args(false);
   command.add_option("--style", options.style, "A style of the .cga file")->type_name("NAME");
   command.add_flag("--geographic", options.geographic, "Coordinates of a GeoJSON --axiom-file are longitude, latitude");
+  command
+      .add_option("--measure", options.measures,
+                  "Sum up over the terminals of a name, or over all, for each axiom (in --json): the product of "
+                  "FACTORS, letters of x y z (the sizes) and a (the attribute), or count; up to four")
+      ->type_name("TERMINAL:FACTORS")
+      ->allow_extra_args(false);
   command.add_option("--repeat", options.repeat, "Derive N times, after 0.1 s to warm up, and report the median time")
       ->check(CLI::Range(1u, 100000u))
       ->capture_default_str();

@@ -17,7 +17,7 @@ struct SpawnOptions {
   float spacing = 0;
   std::string axiomFile;
   ScatterOptions scatter;
-  std::vector<std::string> set;
+  std::vector<std::string> set, measures;
   std::string start, style;
   std::vector<std::string> attributes;
   bool hasSize = false, geographic = false;

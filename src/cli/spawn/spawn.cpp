@@ -6,6 +6,7 @@
 #include "cli/spawn/cga_source.h"
 #include "cli/spawn/grammar_source.h"
 #include "cli/spawn/lsystem.h"
+#include "cli/spawn/measures.h"
 #include "cli/spawn/options.h"
 #include "cli/spawn/reference.h"
 #include "cli/spawn/scene_picture.h"
@@ -326,9 +327,10 @@ Changes change(const SpawnOptions& options, const std::vector<GpgpAxiom>& axioms
 }
 
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
-  if (options.scatter.distance > 0 && std::any_of(options.grammars.begin(), options.grammars.end(),
-                                                  [](const auto& file) { return isCga(file) || isLsystem(file); }))
-    throw Usage("--scatter is for .pga and .gml files, and for baked grammars");
+  if ((options.scatter.distance > 0 || !options.measures.empty()) &&
+      std::any_of(options.grammars.begin(), options.grammars.end(),
+                  [](const auto& file) { return isCga(file) || isLsystem(file); }))
+    throw Usage("--scatter and --measure are for .pga and .gml files, and for baked grammars");
   if (std::any_of(options.grammars.begin(), options.grammars.end(), isCga)) return spawnFile(options, common);
   if (!options.style.empty() || !options.attributes.empty() || options.geographic || options.maxFaces ||
       options.maxVertices || options.maxGeometry || options.maxWork)
@@ -445,6 +447,9 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   }
   std::optional<Changes> changes;
   if (options.changed > 0) changes = change(options, start, deriver, prepared);
+  Json measures;
+  if (!options.measures.empty())
+    measures = measureAxioms(session, grammar, options.measures, start, options.maxDepth, camera ? &*camera : nullptr);
   session.checkValidation();
 
   std::vector<std::string> bucketNames(std::max(graph.buckets, 1u));
@@ -512,6 +517,11 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     text << "derived anew: " << changes->changed << " of " << changes->instances << " instances in "
          << milliseconds(changes->part.median()) << " instead of " << milliseconds(changes->whole.median())
          << " for all; all others are unchanged\n";
+  for (const std::string& name : options.measures) {
+    double sum = 0;
+    for (const Json& axiom : measures) sum += axiom["sums"][name].get<double>();
+    text << name << ": " << sum << " of all axioms\n";
+  }
   if (!chosen.file.empty()) text << "kernel: " << chosen.file.string() << '\n';
   if (!options.image.empty()) text << "picture: " << options.image << '\n';
   if (!options.out.empty()) text << "triangles: " << options.out << '\n';
@@ -553,6 +563,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
                                              {"gpu_ms_median", changes->part.median()},
                                              {"gpu_ms_median_of_all", changes->whole.median()}}
                                       : Json()},
+                  {"measures", measures},
                   {"image", options.image.empty() ? Json() : Json(options.image)},
                   {"out", options.out.empty() ? Json() : Json(options.out)}};
   return outcome;

@@ -508,7 +508,7 @@ Result<void> Canvas::draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInf
                      info.height, last, history.preparedWidth, history.preparedHeight);
   struct {
     float columns[2][12];
-    uint32_t size[4], begins[2];
+    uint32_t size[4], begins[2], encode;
   } constants{};
   for (int k = 0; k < 2; ++k) {
     const float* clip = k && info.secondClip ? info.secondClip : info.clip;
@@ -520,6 +520,7 @@ Result<void> Canvas::draw(VkCommandBuffer commandBuffer, const GpgpCanvasDrawInf
   constants.size[2] = history.preparedWidth;
   constants.begins[0] = info.x;
   constants.begins[1] = info.secondX;
+  constants.encode = info.encodeSrgb ? 1 : 0;
   core::DrawRecord r;
   r.commandBuffer = commandBuffer;
   r.bindings[shader::kBindHistory].ownBuffer = history.buffer();

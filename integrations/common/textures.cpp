@@ -1,10 +1,10 @@
-#include "textures.h"
+#include "gpgp_textures.hpp"
 
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
-namespace gpgp::rmlui {
+namespace gpgp::integration {
 namespace {
 
 constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
@@ -34,7 +34,7 @@ Textures::Textures(VkPhysicalDevice physical, VkDevice device) : device_(device)
   maxSide_ = properties.limits.maxImageDimension2D;
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   info.magFilter = info.minFilter = VK_FILTER_LINEAR;
-  info.addressModeU = info.addressModeV = VK_SAMPLER_ADDRESS_MODE_REPEAT; // as RmlUi's tiled decorators want it
+  info.addressModeU = info.addressModeV = VK_SAMPLER_ADDRESS_MODE_REPEAT; // as toolkits want it
   if (vkCreateSampler(device, &info, nullptr, &sampler_) < 0) throw std::runtime_error("vkCreateSampler failed");
 }
 
@@ -204,9 +204,9 @@ bool Textures::recordCopy(VkCommandBuffer commands, VkImage from, uint32_t x, ui
   return true;
 }
 
-GpgpCanvasImage Textures::image(const Texture& texture) const {
-  return {texture.view, sampler_,        VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-          VK_TRUE,      GPGP_IMAGE_SRGB, GPGP_IMAGE_FILTER_LINEAR};
+GpgpCanvasImage Textures::image(const Texture& texture, GpgpImageEncoding encoding) const {
+  return {texture.view, sampler_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+          VK_TRUE,      encoding, GPGP_IMAGE_FILTER_LINEAR};
 }
 
-} // namespace gpgp::rmlui
+} // namespace gpgp::integration

@@ -1,20 +1,24 @@
-// RmlUi's textures on the device: uploaded from pixels, or copied from a canvas that a layer was drawn on.
+// Textures that toolkits hand over as pixels: on the device, uploaded from pixels, or copied from a canvas that
+// something was drawn on. Their device memory goes when no frame uses it any more.
 #pragma once
-#include "frame.h"
-
+#include <gpgp/gpgp.hpp>
 #include <vulkan/vulkan.h>
 
-namespace gpgp::rmlui {
+#include <memory>
+#include <vector>
+
+namespace gpgp::integration {
 
 struct Texture {
   uint32_t width = 0, height = 0;
-  std::vector<uint8_t> pixels; ///< to be uploaded; premultiplied, sRGB
+  std::vector<uint8_t> pixels; ///< to be uploaded; premultiplied as they are encoded
   bool filled = false;         ///< what fills it was recorded
   bool broken = false;         ///< there was no memory
   VkImage image = VK_NULL_HANDLE;
   VkDeviceMemory memory = VK_NULL_HANDLE;
   VkImageView view = VK_NULL_HANDLE;
 };
+using TexturePointer = std::shared_ptr<Texture>;
 
 class Textures {
 public:
@@ -32,8 +36,8 @@ public:
   bool recordUpload(VkCommandBuffer commands, uint32_t& count);
   /// Records the copy of a part of `from`, which lies in TRANSFER_SRC_OPTIMAL and is visible to transfers.
   bool recordCopy(VkCommandBuffer commands, VkImage from, uint32_t x, uint32_t y, Texture& texture);
-  /// For GpgpCanvasInfo::images.
-  GpgpCanvasImage image(const Texture& texture) const;
+  /// For GpgpCanvasInfo::images; repeated beyond its edges. encoding: that of its pixels.
+  GpgpCanvasImage image(const Texture& texture, GpgpImageEncoding encoding = GPGP_IMAGE_SRGB) const;
 
   /// An image that canvases are drawn on, to be copied. Throws std::runtime_error.
   struct Target {
@@ -67,4 +71,4 @@ private:
   std::vector<Dead<Staging>> stagings_;
 };
 
-} // namespace gpgp::rmlui
+} // namespace gpgp::integration
