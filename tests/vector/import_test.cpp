@@ -379,7 +379,7 @@ TEST(SvgImport, AnOutlineThatIsRefusedHasItsPlace) {
     source.name = "a.svg";
     source.data = text.data();
     source.size = text.size();
-    source.maxStorageBufferRange = 64 * segments;
+    source.maxStorageBufferRange = 64 * segments / 4; // a drawing takes four such buffers
     source.messageUserData = &messages;
     source.messageFn = [](void* user, const GpgpMessage* m) { static_cast<Texts*>(user)->push_back(placed(*m)); };
     GpgpBlob blob{};
@@ -389,12 +389,12 @@ TEST(SvgImport, AnOutlineThatIsRefusedHasItsPlace) {
   };
   const std::string square = "<rect width='5' height='5'/>\n"; // two segments, besides level ones
   EXPECT_EQ(refused(square + square + "<g><circle r='3'/></g>", 5),
-            Texts{"a.svg:4:4: error: <circle>: the drawing's outlines need more than 320 bytes, which is what a device "
-                  "binds at most"});
+            Texts{"a.svg:4:4: error: <circle>: the drawing's outlines need more than 320 bytes, which is what a recording "
+                  "can bind"});
   const std::string clip = "<clipPath id='c'>\n<circle r='3'/></clipPath><g clip-path='url(#c)'>" + square + "</g>";
   EXPECT_EQ(refused(clip, 3),
             Texts{"a.svg:3:1: error: <circle>: the drawing's outlines need more than 192 bytes, which "
-                  "is what a device binds at most"});
+                  "is what a recording can bind"});
 }
 
 TEST(SvgImport, Colours) {
