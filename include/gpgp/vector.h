@@ -445,8 +445,8 @@ typedef struct GpgpCanvasInfo {
  *  differently. The comparison is between a target and an attachment of the same format that was cleared to 0 before
  *  the canvas was drawn. In R16G16B16A16_SFLOAT they differ by at most one unit in the last place of a half, in
  *  R8G8B8A8_UNORM by at most 1/255, also where both have encodeSrgb. An sRGB attachment encodes premultiplied colour,
- * so it is within 1/255 of a target with encodeSrgb only where the canvas is opaque. NOT_READY: a drawing or glyph that
- * is shown is not resident, the history is not resident, or the canvas is not prewarmed.
+ *  so it is within 1/255 of a target with encodeSrgb only where the canvas is opaque. NOT_READY: a drawing or glyph
+ * that is shown is not resident, the history is not resident, or the canvas is not prewarmed.
  *  @threads handle @lifetime call; image: frame @pass outside @state compute pipeline, compute descriptor set 0 (and 1
  *  where items paint with images), push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpRecorder canvas, VkCommandBuffer commandBuffer,
@@ -463,7 +463,7 @@ typedef struct GpgpCanvasDrawInfo {
   uint32_t secondX;             /**< multiview targets only: `x` for view 1 */
   const float* secondClip; /**< multiview targets only: 16 numbers, `clip` for view 1; NULL: `clip` for both views */
   /** VK_FALSE: the attachment receives premultiplied linear colour, as sRGB and float formats want it. VK_TRUE:
-   * straight colour encoded as sRGB and then multiplied by alpha, for UNORM formats that are shown as they are. */
+   *  straight colour encoded as sRGB and then multiplied by alpha, for UNORM formats that are shown as they are. */
   VkBool32 encodeSrgb;
 } GpgpCanvasDrawInfo;
 #define GPGP_CANVAS_DRAW_INFO_INIT GPGP_INIT(GpgpCanvasDrawInfo, GPGP_STRUCTURE_CANVAS_DRAW_INFO)

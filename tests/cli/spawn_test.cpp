@@ -46,6 +46,7 @@ TEST(CliSpawn, CountsTerminals) {
                                                 "rounds",
                                                 "peak_shapes",
                                                 "max_shapes",
+                                                "measures",
                                                 "max_rounds",
                                                 "dropped_shapes",
                                                 "unfinished_shapes",

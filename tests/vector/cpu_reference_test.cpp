@@ -126,20 +126,19 @@ struct CpuTest : CanvasTest {
     const auto packed = vector::packDrawing(*converted, vector::makeOutlines(*converted, memory), memory);
     const core::Context* owner = nullptr;
     std::vector<vec4>& table = tables[static_cast<const vector::DrawingAsset*>(api::objectOf(drawing, &owner))];
-    table.assign((packed.bytes.size() + packed.segments.size() * sizeof packed.segments[0]) / sizeof(vec4), {});
+    table.assign(packed.bytes.size() / sizeof(vec4), {});
     std::memcpy(table.data(), packed.bytes.data(), packed.bytes.size());
-    std::memcpy(table.data() + packed.bytes.size() / sizeof(vec4), packed.segments.data(),
-                packed.segments.size() * sizeof packed.segments[0]);
+    const auto append = [&](const auto& records) {
+      const auto* first = reinterpret_cast<const vec4*>(records.data());
+      table.insert(table.end(), first, first + records.size() * sizeof records[0] / sizeof(vec4));
+    };
     if (drawingMethods & GPGP_DRAWING_PATCHES) {
       const auto patches = vector::makeTilePatches(*converted, memory);
       EXPECT_TRUE(patches);
-      const auto append = [&](const auto& records) {
-        const auto* first = reinterpret_cast<const vec4*>(records.data());
-        table.insert(table.end(), first, first + records.size() * sizeof records[0] / sizeof(vec4));
-      };
       append(patches->patches);
       append(patches->curves);
     }
+    append(packed.segments);
     return drawing;
   }
 

@@ -388,9 +388,10 @@ TEST(SvgImport, AnOutlineThatIsRefusedHasItsPlace) {
     return messages;
   };
   const std::string square = "<rect width='5' height='5'/>\n"; // two segments, besides level ones
-  EXPECT_EQ(refused(square + square + "<g><circle r='3'/></g>", 5),
-            Texts{"a.svg:4:4: error: <circle>: the drawing's outlines need more than 320 bytes, which is what a recording "
-                  "can bind"});
+  EXPECT_EQ(
+      refused(square + square + "<g><circle r='3'/></g>", 5),
+      Texts{"a.svg:4:4: error: <circle>: the drawing's outlines need more than 320 bytes, which is what a recording "
+            "can bind"});
   const std::string clip = "<clipPath id='c'>\n<circle r='3'/></clipPath><g clip-path='url(#c)'>" + square + "</g>";
   EXPECT_EQ(refused(clip, 3),
             Texts{"a.svg:3:1: error: <circle>: the drawing's outlines need more than 192 bytes, which "

@@ -40,15 +40,17 @@ core::Error Gather::wrong(GpgpResult code, const char* format, ...) const {
 }
 
 /// The slot of an asset, whose tables are there.
-Result<uint32_t> Gather::bind(const core::Resident& asset, const shader::SlotRecord& tables) {
+Result<uint32_t> Gather::bind(const core::Resident& asset, const shader::SlotRecord& tables, bool page) {
   if (assetCount && tables_.assets[assetCount - 1] == &asset) return tables_.assetSlots[assetCount - 1];
   const size_t mask = tables_.assetCells.size() - 1;
   size_t cell = (reinterpret_cast<uintptr_t>(&asset) >> 4) * 0x9e3779b97f4a7c15u >> 32 & mask;
   for (; tables_.assetCells[cell]; cell = (cell + 1) & mask)
     if (const size_t index = tables_.assetCells[cell] - 1u; tables_.assets[index] == &asset)
       return tables_.assetSlots[index];
-  ++assetsNeeded_;
+  assetsNeeded_ += !page;
   if (assetCount == tables_.assets.size()) return kNone;
+  if (!page && assetCount - used_.boundPages == maxDrawnAssets(budgets_)) return kNone;
+  used_.boundPages += page;
   uint32_t binding = 0;
   while (binding < bufferCount_ && buffers_[binding].buffer != asset.buffer()) ++binding;
   if (binding == shader::kMaxBuffers)
@@ -199,7 +201,7 @@ Result<bool> Gather::addPages(const DrawingAsset& drawing, uint32_t begin, uint3
   for (const auto& page : drawing.pages()) {
     const uint32_t from = std::max(begin, first), to = std::min(end, page->end);
     if (from < to) {
-      const auto slot = bind(*page, {});
+      const auto slot = bind(*page, {}, true);
       if (!slot) return slot.error();
       if (*slot == kNone || used_.pages == kMaxPlacedPages) return false;
       ++used_.pages;

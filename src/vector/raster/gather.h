@@ -24,7 +24,8 @@ struct ItemAsset {
 struct ItemBudgets {
   uint32_t items, glyphs, shapes, paths;
 };
-/// Different drawings and glyph sets of a recording, and the pages of drawings, of which a buffer holds one.
+/// Different drawings and glyph sets of a recording; and with the pages of drawings, of which a buffer holds one.
+constexpr uint32_t maxDrawnAssets(const ItemBudgets& budgets) { return std::min(budgets.items, shader::kMaxAssets); }
 constexpr uint32_t maxAssets(const ItemBudgets& budgets) {
   return std::min(budgets.items + shader::kMaxBuffers, shader::kMaxAssets);
 }
@@ -164,7 +165,7 @@ private:
   static uint64_t identityOf(const core::Object& asset);
   static constexpr shader::vec4 kNoFrame{0, 0, 1, 0};
   /// kNone where there is no room for another asset.
-  core::Result<uint32_t> bind(const core::Resident& asset, const shader::SlotRecord& tables);
+  core::Result<uint32_t> bind(const core::Resident& asset, const shader::SlotRecord& tables, bool page = false);
   [[gnu::format(printf, 3, 4)]] core::Error wrong(GpgpResult code, const char* format, ...) const;
 
   BoundBuffer buffers_[shader::kMaxBuffers] = {};
@@ -186,7 +187,8 @@ private:
   uint32_t index_ = 0, entry_ = kNone; ///< of the item and of the list's command at hand
   struct Used {
     uint32_t paths = 0, segments = 0, patches = 0, placements = 0, smallGlyphs = 0, smallGlyphEntries = 0;
-    uint32_t pages = 0;  ///< placements that stand for them
+    uint32_t pages = 0; ///< placements that stand for them
+    uint32_t boundPages = 0;
     uint32_t glyphs = 0; ///< those without room, too
   } used_;
   uint32_t sourcesNeeded_ = 0, layersNeeded_ = 0, assetsNeeded_ = 0;
