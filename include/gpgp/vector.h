@@ -48,8 +48,7 @@ typedef struct GpgpDrawingCreateInfo {
   const GpgpPathGroup* groups; /**< the groups that `paths` refer to; only with paths */
   uint32_t groupCount;
   /** An editable drawing of the same context. The new drawing equals it except for the edits, and only the edited
-   *  paths are converted. The result equals a drawing made from all paths. The base does not change and may be
-   *  destroyed. */
+   *  paths are converted. The result equals one made from all paths. The base stays as it is and may be destroyed. */
   GpgpAsset base;
   const GpgpPathEdit* edits; /**< only with base; of two edits with the same index the later one wins */
   uint32_t editCount;
@@ -105,8 +104,8 @@ typedef struct GpgpGlyph {
   const GpgpPath* paths;
   uint32_t pathCount; /**< 0: a blank */
   /** One for each path. VK_TRUE: the path takes its RGB from the text's colour, and its alpha is multiplied by the
-   *  text's alpha. VK_FALSE: the path keeps its own RGB; its alpha is multiplied all the same. NULL: VK_TRUE for all
-   *  paths. */
+   *  text's alpha. VK_FALSE: the path keeps its own RGB; its alpha is multiplied all the same. NULL: VK_TRUE for all.
+   */
   const VkBool32* foreground;
 } GpgpGlyph;
 
@@ -171,8 +170,7 @@ GPGP_API GpgpResult GPGP_CALL gpgpAddGlyphs(GpgpAsset glyphSet, const GpgpGlyph*
                                             uint32_t* indices);
 
 /** Looks up glyphs by key. indices receives GPGP_GLYPH_NONE for a key that is not in the set. A glyph that was found
- *  stays at least until the current frame is safe. All indices stay valid while GpgpGlyphSetInfo::evicted does not
- *  change.
+ *  stays at least until the current frame is safe. Indices stay valid while GpgpGlyphSetInfo::evicted does not change.
  *  INCOMPLETE: some keys are not in the set. @threads context @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpFindGlyphs(GpgpAsset glyphSet, const uint64_t* keys, uint32_t count,
                                              uint32_t* indices);
@@ -242,9 +240,8 @@ typedef struct GpgpCanvasCreateInfo {
    *
    *  Assets share device buffers of at most VkPhysicalDeviceLimits::maxStorageBufferRange, and a recording binds at
    *  most 8 of them. Needing a ninth is an error. This can only happen with assets above 1 MiB, or with assets above 64
-   *  KiB that lie among some 100 MiB of others. A drawing whose outlines exceed one buffer
-   *  lies in up to 5. A recording can place 64 such buffers of outlines, counted each time that the drawing is shown; a
-   *  drawing beyond, and everything painted after it, is left out and reported. */
+   *  KiB that lie among some 100 MiB of others. A drawing whose outlines exceed one buffer lies in up
+   *  to 5. A recording can place 64 such buffers of outlines, counted each time that they are shown. */
   uint32_t maxDrawings;
   /** Glyphs of all texts in one recording, blanks not counted, at most 1048576; 0: 1024. 160 bytes each, and 48 more
    *  for every recording that can be in flight. */
@@ -253,15 +250,13 @@ typedef struct GpgpCanvasCreateInfo {
    *  Their gradients may have twice as many stops in all; a nine-slice or tiled image counts as 2 stops. 352 bytes
    *  each, and 240 more for every recording that can be in flight. */
   uint32_t maxShapes;
-  /** What recordings will write; 0: anything. Pipelines are made only for these: for a single target half as many, in
-   *  half the time. */
+  /** What recordings will write; 0: anything. Pipelines are made only for these: half as many for a single target. */
   GpgpCanvasTargets targets;
   /** Pixels of the intermediate pictures that layers (layers.h) need in one recording, at most 2^28; 0: none. A
    *  recording with layers needs the whole canvas, the part of it that each layer, mask and clip of a layer covers, and
    *  the intermediate results of the largest filter. Paths that lie behind a layer need a picture as well. A pixel
-   *  takes 8 bytes. The first layered drawing that does not fit and everything painted after it are left out. With
-   *  room for the intermediate results of all filters at once, operations that touch nothing of each other's run side
-   *  by side, which makes many small layers several times as fast. */
+   *  takes 8 bytes. The first layered drawing that does not fit and everything painted after it are left out. If
+   *  the results of all filters fit at once, operations on separate parts of the canvas run side by side. */
   uint32_t maxLayerPixels;
   /** Operations on these pictures in one recording, at most 65536; 0: 1024. A layer takes one, a step of a filter one
    *  to five. Each takes 304 bytes for every recording that can be in flight. */
@@ -421,8 +416,7 @@ typedef struct GpgpCanvasInfo {
   VkBool32 encodeSrgb;
   /** VK_TRUE: in each pixel, the front-most path with an edge there is weighted by the exact area that it covers, not
    *  by its samples. Edges have finer steps where only one passes through a pixel. Adjacent paths show no seam. Where
-   *  one shape lies on an equal one, up to a tenth of the lower one's colour shows at the edge.
-   */
+   *  one shape lies on an equal one, up to a tenth of the lower one's colour shows at the edge. */
   VkBool32 exactArea;
   VkBool32 blendSrgb;            /**< VK_TRUE: colours are mixed as sRGB encodes them, as SVG renderers do. */
   const GpgpCanvasImage* images; /**< the images that items paint with */
@@ -445,8 +439,8 @@ typedef struct GpgpCanvasInfo {
  *  differently. The comparison is between a target and an attachment of the same format that was cleared to 0 before
  *  the canvas was drawn. In R16G16B16A16_SFLOAT they differ by at most one unit in the last place of a half, in
  *  R8G8B8A8_UNORM by at most 1/255, also where both have encodeSrgb. An sRGB attachment encodes premultiplied colour,
- *  so it is within 1/255 of a target with encodeSrgb only where the canvas is opaque. NOT_READY: a drawing or glyph
- * that is shown is not resident, the history is not resident, or the canvas is not prewarmed.
+ *  so it is within 1/255 of a target with encodeSrgb only where the canvas is opaque.
+ *  NOT_READY: a drawing or glyph that is shown, or the history, is not resident, or the canvas is not prewarmed.
  *  @threads handle @lifetime call; image: frame @pass outside @state compute pipeline, compute descriptor set 0 (and 1
  *  where items paint with images), push constants */
 GPGP_API GpgpResult GPGP_CALL gpgpRecordPrepareCanvas(GpgpRecorder canvas, VkCommandBuffer commandBuffer,

@@ -1,10 +1,13 @@
 #include "writer.h"
 
+#include "gpgp_srgb.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace gpgp::imgui {
+using integration::linearFromSrgb;
 namespace {
 
 constexpr float kFar = 1e6f; // pixels
@@ -19,7 +22,6 @@ Box meet(const Box& a, const Box& b) {
   return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right), std::min(a.bottom, b.bottom)};
 }
 
-float linearFromSrgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
 constexpr int kShifts[4] = {IM_COL32_R_SHIFT, IM_COL32_G_SHIFT, IM_COL32_B_SHIFT, IM_COL32_A_SHIFT};
 
 class Writer {

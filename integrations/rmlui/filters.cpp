@@ -1,5 +1,7 @@
 #include "filters.h"
 
+#include "gpgp_srgb.hpp"
+
 #include <RmlUi/Core/DecorationTypes.h>
 #include <RmlUi/Core/Variant.h>
 
@@ -7,9 +9,8 @@
 #include <cmath>
 
 namespace gpgp::rmlui {
+using integration::linearFromSrgb;
 namespace {
-
-float linearFromSrgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
 
 /// What is mixed into red, green and blue: a matrix between the identity and `full`.
 using Rows = std::array<std::array<float, 3>, 3>;

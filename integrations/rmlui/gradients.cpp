@@ -1,4 +1,5 @@
 // Gradients: those of boxes with round corners are shapes of the list, conic ones wedges of triangles.
+#include "gpgp_srgb.hpp"
 #include "writer.h"
 
 #include <algorithm>
@@ -6,11 +7,10 @@
 #include <numbers>
 
 namespace gpgp::rmlui {
+using integration::linearFromSrgb;
 namespace {
 
 constexpr int kSubdivision = 12; // of the curve between two stops: within 1/255 of it
-
-float linearFromSrgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
 
 /// Positions at which a straight line between colours begins, within a range.
 std::vector<float> positionsOf(const Gradient& gradient, float from, float to) {

@@ -2,6 +2,7 @@
 #include "filters.h"
 #include "gpgp_glyph_cache.hpp"
 #include "gpgp_rmlui.hpp"
+#include "gpgp_srgb.hpp"
 #include "gpgp_textures.hpp"
 #include "text_mesh.h"
 #include "writer.h"
@@ -13,14 +14,13 @@
 #include <stdexcept>
 
 namespace gpgp::rmlui {
+using integration::linearFromSrgb;
 using integration::Textures;
 namespace {
 
 void check(GpgpResult result, const char* what) {
   if (result < 0) throw std::runtime_error(std::string(what) + ": " + gpgpResultString(result));
 }
-
-float linearFromSrgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
 
 constexpr float kFar = 1e6f; // pixels
 constexpr GpgpAccess kCopied{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,

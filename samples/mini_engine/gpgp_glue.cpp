@@ -2,6 +2,7 @@
 #include "gpgp_glue.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -147,5 +148,7 @@ std::vector<char> readFile(const std::string& path) {
 }
 
 bool fileExists(const std::string& path) { return std::filesystem::is_regular_file(path); }
+
+float linearFromSrgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
 
 } // namespace mini

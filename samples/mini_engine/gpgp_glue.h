@@ -82,5 +82,6 @@ constexpr GpgpAccess kVertexShaderRead = {VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT,
 
 std::vector<char> readFile(const std::string& path);
 bool fileExists(const std::string& path);
+float linearFromSrgb(float v); ///< 0 to 1
 
 } // namespace mini

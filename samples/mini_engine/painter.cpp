@@ -1,5 +1,7 @@
 #include "painter.h"
 
+#include "gpgp_glue.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -7,10 +9,7 @@
 namespace mini {
 
 Color rgb(uint32_t hex, float alpha) {
-  const auto linear = [](uint32_t byte) {
-    const float v = static_cast<float>(byte & 255u) / 255.0f;
-    return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
-  };
+  const auto linear = [](uint32_t byte) { return linearFromSrgb(static_cast<float>(byte & 255u) / 255.0f); };
   return {linear(hex >> 16), linear(hex >> 8), linear(hex), alpha};
 }
 

@@ -409,10 +409,7 @@ void writeSvg(const Scene& scene, const std::string& path) {
   bool plain = scene.groups.empty();
   for (const Shape& s : scene.shapes) {
     plain = plain && !s.gradient;
-    const auto byte = [&](int k) {
-      const double c = static_cast<double>(s.color[k]);
-      return static_cast<unsigned>(255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055) + 0.5);
-    };
+    const auto byte = [&](int k) { return static_cast<unsigned>(255 * host::srgbFromLinear(s.color[k]) + 0.5f); };
     add("<path fill='#%02x%02x%02x' fill-opacity='%g' fill-rule='%s' d='", byte(0), byte(1), byte(2),
         static_cast<double>(s.color[3]), s.rule == GPGP_FILL_EVEN_ODD ? "evenodd" : "nonzero");
     const float* p = s.points.data();

@@ -16,6 +16,16 @@ struct PagesTest : LayersTest {
     const core::Context* owner = nullptr;
     return static_cast<const vector::DrawingAsset&>(*api::objectOf(drawing, &owner));
   }
+  /// A drawing, as if the device of another one bound as many segments at once.
+  GpgpAsset makeWithin(uint32_t segments, GpgpAsset like, const std::vector<GpgpPath>& paths,
+                       const std::vector<GpgpPathGroup>& groups, GpgpResult expected = GPGP_SUCCESS) {
+    auto& limits = assetOf(like).context.device.limits;
+    const uint32_t real = limits.maxStorageBufferRange;
+    limits.maxStorageBufferRange = segments * uint32_t(sizeof(shader::SegmentRecord));
+    const GpgpAsset drawing = makeDrawing(paths, groups, expected);
+    limits.maxStorageBufferRange = real;
+    return drawing;
+  }
   /// The same drawing twice: as it is, and in so many pages.
   std::pair<GpgpAsset, GpgpAsset> twice(const std::vector<GpgpPath>& paths, const std::vector<GpgpPathGroup>& groups,
                                         uint32_t pages) {
@@ -23,11 +33,7 @@ struct PagesTest : LayersTest {
     const vector::DrawingAsset& asset = assetOf(one);
     EXPECT_TRUE(asset.pages().empty());
     const uint32_t segments = asset.segments(asset.paths());
-    auto& limit = const_cast<VkPhysicalDeviceLimits&>(asset.context.device.limits).maxStorageBufferRange;
-    const uint32_t real = limit;
-    limit = (segments + pages - 1) / pages * uint32_t(sizeof(shader::SegmentRecord));
-    const GpgpAsset other = makeDrawing(paths, groups);
-    limit = real;
+    const GpgpAsset other = makeWithin((segments + pages - 1) / pages, one, paths, groups);
     EXPECT_TRUE(!other || assetOf(other).pages().size() == pages);
     return {one, other};
   }
@@ -104,11 +110,8 @@ TEST_F(PagesTest, MoreThanARecordingBindsIsRefused) {
   for (int i = 0; i < 40; ++i) from.path(dice, kinds, 90, 0, 0);
   const auto [one, other] = twice(from.paths, {}, 4);
   ASSERT_TRUE(one && other);
-  auto& limit = const_cast<VkPhysicalDeviceLimits&>(assetOf(one).context.device.limits).maxStorageBufferRange;
-  const uint32_t real = limit, segments = assetOf(one).segments(assetOf(one).paths());
-  limit = segments / 5 * uint32_t(sizeof(shader::SegmentRecord));
-  EXPECT_EQ(makeDrawing(from.paths, {}, GPGP_ERROR_UNSUPPORTED), nullptr);
-  limit = real;
+  const uint32_t segments = assetOf(one).segments(assetOf(one).paths());
+  EXPECT_EQ(makeWithin(segments / 5, one, from.paths, {}, GPGP_ERROR_UNSUPPORTED), nullptr);
   EXPECT_NE(lastMessage().find("outlines"), std::string::npos) << lastMessage();
   gpgpDestroyAsset(one);
   gpgpDestroyAsset(other);

@@ -6,15 +6,21 @@
 #include <cstring>
 
 namespace gpgp::vector {
+namespace {
+
+/// Returns where they lie, in vec4.
+template <class Records> uint32_t append(const Records& records, std::pmr::vector<std::byte>& bytes) {
+  const auto part = std::as_bytes(std::span(records));
+  const size_t at = bytes.size() / sizeof(shader::vec4);
+  bytes.insert(bytes.end(), part.begin(), part.end());
+  return static_cast<uint32_t>(at);
+}
+
+} // namespace
 
 DrawingTables packDrawing(const Drawing& drawing, const Outlines& outlines, std::pmr::memory_resource* memory) {
   DrawingTables tables(memory);
-  const auto add = [&bytes = tables.bytes](const auto& records) { // returns where, in vec4
-    const auto part = std::as_bytes(std::span(records));
-    const size_t at = bytes.size() / sizeof(shader::vec4);
-    bytes.insert(bytes.end(), part.begin(), part.end());
-    return static_cast<uint32_t>(at);
-  };
+  const auto add = [&](const auto& records) { return append(records, tables.bytes); };
   // Runs are drawings of their own: paths count from the run's first one.
   std::pmr::vector<shader::SegmentRecord>& segments = tables.segments;
   segments.assign(outlines.segments.begin(), outlines.segments.end());
@@ -127,11 +133,9 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::make(core::Context& conte
         drawing.words.empty() ? makePatches(drawing, &context.host()) : core::Result<Patches>(Patches(&context.host()));
     if (!patches) return patches.error();
     if (!drawing.words.empty()) patches->words = std::move(drawing.words);
-    asset->patchWords_ = static_cast<uint32_t>(tables.bytes.size() / sizeof(shader::vec4));
+    asset->patchWords_ = append(patches->words, tables.bytes);
     asset->quads_ = quadsOf(patches->words);
     asset->pathsLeftOut_ = patches->words[0].z;
-    const auto words = std::as_bytes(std::span(patches->words));
-    tables.bytes.insert(tables.bytes.end(), words.begin(), words.end());
     for (const Patches::LeftOut& left : patches->leftOut)
       context.message(
           GPGP_SEVERITY_WARNING, GPGP_ERROR_UNSUPPORTED, "gpgpCreateDrawing", label,
@@ -141,14 +145,8 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::make(core::Context& conte
   if (methods & GPGP_DRAWING_PATCHES) {
     const auto patches = makeTilePatches(drawing, &context.host());
     if (!patches) return patches.error();
-    const auto add = [&bytes = tables.bytes](const auto& records) {
-      const auto part = std::as_bytes(std::span(records));
-      const size_t at = bytes.size() / sizeof(shader::vec4);
-      bytes.insert(bytes.end(), part.begin(), part.end());
-      return static_cast<uint32_t>(at);
-    };
-    asset->tilePatchTable_ = add(patches->patches);
-    asset->tileCurveTable_ = add(patches->curves);
+    asset->tilePatchTable_ = append(patches->patches, tables.bytes);
+    asset->tileCurveTable_ = append(patches->curves, tables.bytes);
     asset->tilePatchEnds_.assign(patches->ends.begin(), patches->ends.end());
   }
   if (!drawing.plan.empty()) asset->setLayers(drawing, outlines);
@@ -176,18 +174,12 @@ core::Result<core::Unique<DrawingAsset>> DrawingAsset::make(core::Context& conte
 core::Result<void> DrawingAsset::placeSegments(DrawingTables& tables) {
   const std::span<const shader::SegmentRecord> segments(tables.segments);
   const size_t most = context.device.limits.maxStorageBufferRange, ofPage = most / sizeof segments[0];
-  const bool paged = tables.bytes.size() + segments.size_bytes() > most;
-  if (paged && (tables.bytes.size() > most || segments.size() > ofPage * kMaxOutlineBuffers))
-    return core::makeError(GPGP_ERROR_UNSUPPORTED,
-                           "the drawing has %zu bytes of outlines and %zu of other tables, but this device binds at "
-                           "most %zu at once, and %u times as much of outlines",
-                           segments.size_bytes(), tables.bytes.size(), most, kMaxOutlineBuffers);
-  if (!paged) {
-    segmentTable_ = static_cast<uint32_t>(tables.bytes.size() / sizeof(shader::vec4));
-    const auto bytes = std::as_bytes(segments);
-    tables.bytes.insert(tables.bytes.end(), bytes.begin(), bytes.end());
+  if (tables.bytes.size() + segments.size_bytes() <= most) {
+    segmentTable_ = append(segments, tables.bytes);
     return {};
   }
+  if (segments.size_bytes() > outlineBytes(context.device.limits.maxStorageBufferRange))
+    return OutlineRoom(outlineBytes(context.device.limits.maxStorageBufferRange)).error();
   for (size_t begin = 0; begin < segments.size(); begin += ofPage) {
     const size_t count = std::min(ofPage, segments.size() - begin);
     auto page = SegmentPage::create(context, label.text, segments.subspan(begin, count));

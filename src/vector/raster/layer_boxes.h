@@ -54,7 +54,7 @@ inline shader::PictureRecord recordOf(const LayerTables::Picture& p) {
   record.left = p.box.left, record.top = p.box.top, record.right = p.box.right, record.bottom = p.box.bottom;
   record.first = p.region ? p.x : p.first; // finish() makes places of them
   record.stride = p.region ? 0 : widthOf(p.box);
-  record.pad0 = p.region ? p.y : 0;
+  record.pad0 = p.region ? p.y : p.maker;
   record.pad1 = 1;
   return record;
 }

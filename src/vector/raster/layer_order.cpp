@@ -11,8 +11,8 @@ bool inRaster(const PictureRecord& p) { return p.stride == 0; }
 bool hasPixels(const PictureRecord& p) { return p.pad1 != 0 && p.left < p.right && p.top < p.bottom; }
 uint64_t pixelsOf(const PictureRecord& p) { return uint64_t(p.right - p.left) * uint64_t(p.bottom - p.top); }
 
-/// The raster by cells: after which level an operation may read or write there. Nothing is written after it was read,
-/// but by who read it.
+/// The raster by cells: after which level an operation may read or write there. What an operation has read, none writes
+/// later, but for composites, which write where they read.
 class Cells {
 public:
   static constexpr uint32_t kSide = 32;
@@ -69,16 +69,13 @@ void LayerPlanner::order() {
         level = std::max(level, cells.written(*from));
         continue;
       }
-      uint32_t maker = i; // the last one that wrote there
-      while (maker > 0 && (inRaster(operations[maker - 1].result) || tables_.places[maker - 1] != from->first)) --maker;
-      if (maker == 0) continue; // nobody has: it is never looked at
-      from->first = operations[maker - 1].result.first;
-      level = std::max(level, tables_.levels[maker - 1] + 1);
+      const uint32_t maker = from->pad0 - 1;
+      from->first = operations[maker].result.first;
+      level = std::max(level, tables_.levels[maker] + 1);
     }
     if (inRaster(o.result)) {
       if (hasPixels(o.result)) level = std::max(level, cells.written(o.result));
     } else {
-      tables_.places[i] = o.result.first;
       o.result.first = next;
       next += static_cast<uint32_t>(pixelsOf(o.result));
     }

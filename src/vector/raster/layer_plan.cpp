@@ -76,13 +76,14 @@ LayerPlanner::Picture LayerPlanner::region(const PixelBox& box) {
   s.width = std::max(s.width, roundUp(s.shelfX + width, kBin));
   s.columnY = std::max(s.columnY, s.shelfY + height); // of the last row, which may grow
   s.height = std::max(s.height, s.columnY);
-  const Picture made{box, true, srgb_, s.shelfX, s.shelfY, 0};
+  const Picture made{box, true, srgb_, s.shelfX, s.shelfY, 0, 0};
   s.shelfX += width;
   return made;
 }
 
 LayerPlanner::Picture LayerPlanner::picture(const PixelBox& box, bool srgb) {
-  const Picture made{box, false, srgb, 0, 0, static_cast<uint32_t>(std::min<uint64_t>(state_.pixels, UINT32_MAX))};
+  const auto first = static_cast<uint32_t>(std::min<uint64_t>(state_.pixels, UINT32_MAX));
+  const Picture made{box, false, srgb, 0, 0, first, state_.operations};
   state_.tooLarge = state_.tooLarge || widthOf(box) > kMostDispatched || heightOf(box) > kMostDispatched;
   state_.pixels += uint64_t(widthOf(box)) * heightOf(box);
   state_.mostPixels = std::max(state_.mostPixels, state_.pixels);

@@ -63,14 +63,14 @@ struct LayerTables {
   LayerTables(const LayerBudgets& budgets, uint32_t maxRuns, std::pmr::memory_resource* memory)
       : operations(budgets.operations, memory), steps(budgets.operations, memory), runs(maxRuns, memory),
         filters(kMaxNestedSteps, memory), ordered(budgets.operations, memory), levels(budgets.operations, memory),
-        places(budgets.operations, memory), starts(budgets.operations + size_t(1), memory),
-        cells(cellsFor(budgets), memory) {}
+        starts(budgets.operations + size_t(1), memory), cells(cellsFor(budgets), memory) {}
   static size_t cellsFor(const LayerBudgets& budgets);
   /// A picture while operations are listed: in a region of the raster, or behind all of them.
   struct Picture {
     PixelBox box;
     bool region = true, srgb = false;
     uint32_t x = 0, y = 0, first = 0;
+    uint32_t maker = 0; ///< the operation whose result it is
   };
   struct FilterStep {
     PixelBox need;
@@ -80,10 +80,9 @@ struct LayerTables {
   std::pmr::vector<core::Step> steps;                   ///< of the operations behind it
   std::pmr::vector<PlacedRun> runs;                     ///< in painting order
   std::pmr::vector<FilterStep> filters;                 ///< of those at hand, in each other
-  // order()'s: steps by levels; of each operation its level, and where it wrote before it got a place of its own; where
-  // each level begins; cells of the raster.
+  // order()'s: steps by levels; of each operation its level; where each level begins; cells of the raster.
   std::pmr::vector<core::Step> ordered;
-  std::pmr::vector<uint32_t> levels, places, starts, cells;
+  std::pmr::vector<uint32_t> levels, starts, cells;
 };
 
 /// Lists what a recording's units do, one after another. A unit is a thing that the raster draws: an item, or one
@@ -142,7 +141,7 @@ private:
   void endUnit(bool layered);
   void order();
   Picture region(const PixelBox& box);
-  Picture picture(const PixelBox& box, bool srgb);
+  Picture picture(const PixelBox& box, bool srgb); ///< the next operation's result
   void place(uint32_t run, float opacity, const Picture& where, const Map& map, uint32_t command = PlacedRun::kNone,
              uint32_t count = PlacedRun::kNone);
   shader::OperationRecord& operation(uint32_t kind, uint32_t pass, const Picture& result);
