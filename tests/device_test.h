@@ -6,6 +6,7 @@
 #include <gpgp/core.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <memory>
@@ -15,17 +16,24 @@
 
 namespace gpgp::test {
 
-/// Vulkan as the library sees it where GPGP_TEST_HARDWARE is set: all devices say that they are GPUs, so that software
-/// devices run the passes that they have others for. GPGP_TEST_HARDWARE=subgroups: whose subgroups are of 32, for those
-/// shaders that count on having some, of whatever size.
-struct AsHardware {
+/// Vulkan as the library sees it by the environment.
+/// GPGP_TEST_HARDWARE: all devices say that they are GPUs, so that software devices run the passes that they have
+/// others for. GPGP_TEST_HARDWARE=subgroups: whose subgroups are of 32, for those shaders that count on having some, of
+/// whatever size. GPGP_TEST_STORAGE_BUFFERS: as many storage buffers a stage, if the device has more.
+struct AsAnother {
   static inline PFN_vkGetInstanceProcAddr real = nullptr;
   static inline PFN_vkGetPhysicalDeviceProperties2 realProperties = nullptr;
 
   static VKAPI_ATTR void VKAPI_CALL properties(VkPhysicalDevice device, VkPhysicalDeviceProperties2* found) {
     realProperties(device, found);
+    if (const char* count = std::getenv("GPGP_TEST_STORAGE_BUFFERS")) {
+      uint32_t& limit = found->properties.limits.maxPerStageDescriptorStorageBuffers;
+      limit = std::min(limit, static_cast<uint32_t>(std::strtoul(count, nullptr, 10)));
+    }
+    const char* hardware = std::getenv("GPGP_TEST_HARDWARE");
+    if (!hardware) return;
     found->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
-    if (std::string_view(std::getenv("GPGP_TEST_HARDWARE")) != "subgroups") return;
+    if (std::string_view(hardware) != "subgroups") return;
     for (auto* next = static_cast<VkBaseOutStructure*>(found->pNext); next; next = next->pNext)
       if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_PROPERTIES) {
         auto* sizes = reinterpret_cast<VkPhysicalDeviceSubgroupSizeControlProperties*>(next);
@@ -51,9 +59,9 @@ struct SharedDevice {
   explicit SharedDevice(const char* label) {
     GpgpContextCreateInfo info = device.contextCreateInfo();
     info.label = label;
-    if (std::getenv("GPGP_TEST_HARDWARE")) {
-      AsHardware::real = info.getInstanceProcAddr;
-      info.getInstanceProcAddr = &AsHardware::lookUp;
+    if (std::getenv("GPGP_TEST_HARDWARE") || std::getenv("GPGP_TEST_STORAGE_BUFFERS")) {
+      AsAnother::real = info.getInstanceProcAddr;
+      info.getInstanceProcAddr = &AsAnother::lookUp;
     }
     if (std::getenv("GPGP_TEST_PLAIN")) info.features = 0; // as on devices that offer nothing optional
     features = info.features;

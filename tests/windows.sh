@@ -89,11 +89,11 @@ exports() {
   echo "$(basename "$library"): $(wc -w <<<"$found") functions, $(($(stat -c %s "$library") / 1024)) KiB;" \
     "needs $(x86_64-w64-mingw32-objdump -p "$library" | sed -n 's/^.*DLL Name: //p' | paste -sd' ')"
 }
-exports "$build/libgpgp.dll" run-time core spawn fit scatter lsystem tiles paths vector ui layers visibility atlas
+exports "$build/libgpgp.dll" run-time core spawn detail fit scatter lsystem tiles paths vector ui layers visibility atlas
 if [[ $compilers == ON ]]; then
   exports "$build/libgpgp_compiler.dll" compiler core spawn spawn_builder lsystem vector svg lottie
 fi
-exports "$build/libgpgp_evaluator.dll" evaluator evaluator
+exports "$build/libgpgp_evaluator.dll" evaluator evaluator cga
 if [[ $all == yes ]]; then exports "$build/libgpgp_text.dll" text text; fi
 
 # ---------------------------------------------------------------- under Wine

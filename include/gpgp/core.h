@@ -48,6 +48,7 @@
 #ifndef GPGP_CORE_H
 #define GPGP_CORE_H
 
+#include <gpgp/structure_types.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <vulkan/vulkan_core.h>
@@ -138,93 +139,6 @@ typedef struct GpgpMessage {
 /** Receives messages on the thread that called gpgp, so several threads may call it at the same time. The callback must
  *  not call gpgp. @lifetime call */
 typedef void(GPGP_CALL* GpgpMessageFn)(void* userData, const GpgpMessage* message);
-
-/* ---------------------------------------------------------------- structs with a type */
-
-typedef int32_t GpgpStructureType;
-enum {
-  GPGP_STRUCTURE_CONTEXT_CREATE_INFO = 1,
-  GPGP_STRUCTURE_REQUIREMENTS_INFO = 2,
-  GPGP_STRUCTURE_REQUIREMENTS = 3,
-  GPGP_STRUCTURE_PREWARM_INFO = 4,
-  GPGP_STRUCTURE_TARGET_INFO = 5,
-  GPGP_STRUCTURE_MEMORY_REPORT = 6,
-  /* spawn */
-  GPGP_STRUCTURE_GRAMMAR_SOURCE = 100,
-  GPGP_STRUCTURE_GRAMMAR_CREATE_INFO = 101,
-  GPGP_STRUCTURE_SPAWNER_CREATE_INFO = 102,
-  GPGP_STRUCTURE_SPAWN_INFO = 103,
-  GPGP_STRUCTURE_SPAWN_REPORT = 104,
-  GPGP_STRUCTURE_EVALUATOR_CREATE_INFO = 105,
-  GPGP_STRUCTURE_EVALUATION_INFO = 106,
-  GPGP_STRUCTURE_EVALUATION_RESULT = 107,
-  GPGP_STRUCTURE_TILE_SET_CREATE_INFO = 108,
-  GPGP_STRUCTURE_TILE_INFO = 109,
-  GPGP_STRUCTURE_LSYSTEM_SOURCE = 110,
-  GPGP_STRUCTURE_LSYSTEM_CREATE_INFO = 111,
-  GPGP_STRUCTURE_LSYSTEM_RECORDER_CREATE_INFO = 112,
-  GPGP_STRUCTURE_LSYSTEM_INFO = 113,
-  GPGP_STRUCTURE_LSYSTEM_REPORT = 114,
-  GPGP_STRUCTURE_TILE_SET_REPORT = 115,
-  /* vector */
-  GPGP_STRUCTURE_SVG_SOURCE = 200,
-  GPGP_STRUCTURE_DRAWING_CREATE_INFO = 201,
-  GPGP_STRUCTURE_DRAWING_INFO = 202,
-  GPGP_STRUCTURE_CANVAS_CREATE_INFO = 203,
-  GPGP_STRUCTURE_CANVAS_INFO = 204,
-  GPGP_STRUCTURE_CANVAS_DRAW_INFO = 205,
-  GPGP_STRUCTURE_CANVAS_REPORT = 206,
-  GPGP_STRUCTURE_CANVAS_HISTORY_CREATE_INFO = 207,
-  GPGP_STRUCTURE_GLYPH_SOURCE = 208,
-  GPGP_STRUCTURE_GLYPH_SET_CREATE_INFO = 209,
-  GPGP_STRUCTURE_GLYPH_SET_INFO = 210,
-  GPGP_STRUCTURE_LIST_CREATE_INFO = 211,
-  GPGP_STRUCTURE_HIT_TEST_INFO = 212,
-  GPGP_STRUCTURE_PATCH_RECORDER_CREATE_INFO = 213,
-  GPGP_STRUCTURE_PATCH_DRAW_INFO = 214,
-  GPGP_STRUCTURE_LOTTIE_SOURCE = 220,
-  GPGP_STRUCTURE_LOTTIE_INFO = 221,
-  GPGP_STRUCTURE_LOTTIE_FRAME = 222,
-  /* visibility */
-  GPGP_STRUCTURE_GEOMETRY_SET_CREATE_INFO = 300,
-  GPGP_STRUCTURE_VISIBILITY_RECORDER_CREATE_INFO = 301,
-  GPGP_STRUCTURE_VISIBILITY_INFO = 302,
-  GPGP_STRUCTURE_VISIBILITY_REPORT = 303,
-  GPGP_STRUCTURE_CAMERA_HISTORY_CREATE_INFO = 304,
-  GPGP_STRUCTURE_VISIBILITY_METRICS_INFO = 305,
-  GPGP_STRUCTURE_VIEW_CELL_INFO = 306,
-  GPGP_STRUCTURE_ATLAS_CREATE_INFO = 307,
-  GPGP_STRUCTURE_ATLAS_RECORDER_CREATE_INFO = 308,
-  GPGP_STRUCTURE_ATLAS_INFO = 309,
-  GPGP_STRUCTURE_ATLAS_REPORT = 310,
-  GPGP_STRUCTURE_VIEW_MOTION_INFO = 311,
-  /* text */
-  GPGP_STRUCTURE_FONT_CREATE_INFO = 400,
-  GPGP_STRUCTURE_FONT_INFO = 401,
-  GPGP_STRUCTURE_GLYPH_OUTLINE_INFO = 402,
-  GPGP_STRUCTURE_SHAPER_CREATE_INFO = 403,
-  GPGP_STRUCTURE_SHAPER_REPORT = 404,
-  GPGP_STRUCTURE_TEXT_INFO = 405,
-  GPGP_STRUCTURE_LAYOUT_INFO = 406
-};
-
-#ifdef __cplusplus
-} /* extern "C": a template needs C++ linkage */
-template <class T> inline T gpgpInitStruct(GpgpStructureType type) {
-  T value = T();
-  value.sType = type;
-  return value;
-}
-extern "C" {
-#define GPGP_INIT(Type, type) gpgpInitStruct<Type>(type)
-#else
-#define GPGP_INIT(Type, type)                                                                                          \
-  { .sType = (type) }
-#endif
-
-/* Every descriptor struct begins with sType and pNext, and has an _INIT macro that sets sType and zeroes the rest. Zero
- * always means "none" or "default". pNext must be NULL unless the comment of a struct names what it may point to.
- * Anything else is GPGP_ERROR_INVALID_STRUCT. */
 
 /* ---------------------------------------------------------------- handles */
 
@@ -499,6 +413,19 @@ GPGP_API GpgpResult GPGP_CALL gpgpGetScratchSize(GpgpRecorder recorder, VkDevice
  *  capacity of names on input and the number of passes on output. If names is NULL, only the count is returned. If
  *  names is too small, the function fills it and returns GPGP_INCOMPLETE. @threads any @lifetime call; names: handle */
 GPGP_API GpgpResult GPGP_CALL gpgpGetPasses(GpgpRecorder recorder, uint32_t* count, const char** names);
+
+/** A pipeline of a recorder. */
+typedef struct GpgpPipelineInfo {
+  const char* name;   /**< Of the compute shader, or "draw". */
+  uint32_t codeBytes; /**< SPIR-V of its shaders, in bytes. */
+  float milliseconds; /**< How long Vulkan took to make it, on one thread; 0 before gpgpPrewarm. */
+} GpgpPipelineInfo;
+
+/** Lists the recorder's pipelines and what they cost: one for each compute shader, then those of each target that was
+ *  prewarmed. count and pipelines are used as in gpgpGetPasses. A pipeline that the driver found in a cache costs
+ * little.
+ *  @threads handle @lifetime call; names: handle */
+GPGP_API GpgpResult GPGP_CALL gpgpGetPipelines(GpgpRecorder recorder, uint32_t* count, GpgpPipelineInfo* pipelines);
 
 /** GPU timestamps of a recording. gpgp writes query firstQuery at the start and one query after each pass, omitted
  *  passes included: one more than gpgpGetPasses counts. The engine resets the queries before and reads them after. */

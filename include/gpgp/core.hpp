@@ -198,6 +198,10 @@ public:
   [[nodiscard]] GpgpResult passes(uint32_t& count, const char** names) const noexcept {
     return gpgpGetPasses(get(), &count, names);
   }
+  /// gpgpGetPipelines. count: in, the capacity of infos; out, the number of pipelines. nullptr asks for the count.
+  [[nodiscard]] GpgpResult pipelines(uint32_t& count, GpgpPipelineInfo* infos) const noexcept {
+    return gpgpGetPipelines(get(), &count, infos);
+  }
 };
 
 /// Base of all histories: what is kept from one recording to the next.

@@ -54,6 +54,10 @@ GPGP_API GpgpResult GPGP_CALL gpgpGetEvaluatorTerminals(GpgpEvaluator evaluator,
 GPGP_API GpgpResult GPGP_CALL gpgpGetEvaluatorStarts(GpgpEvaluator evaluator, uint32_t* count,
                                                      GpgpGrammarStart* starts);
 
+/** Lists the names of the fields that the grammar reads, as gpgpGetGrammarFields does.
+ *  @threads any @lifetime handle */
+GPGP_API GpgpResult GPGP_CALL gpgpGetEvaluatorFields(GpgpEvaluator evaluator, uint32_t* count, const char** names);
+
 /** Returns the index of the first start with a name, as gpgpFindGrammarStart does.
  *  Errors: INVALID_ARGUMENT (there is none), INVALID_HANDLE. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpFindEvaluatorStart(GpgpEvaluator evaluator, const char* name, uint32_t* start);
@@ -100,6 +104,10 @@ typedef struct GpgpEvaluationInfo {
   const GpgpSpawnCamera* camera; /**< As GpgpSpawnInfo::camera. */
   /** Optional. Fills GpgpEvaluationResult::measures, of the kept terminals. Not with GPGP_EVALUATION_COUNT_ONLY. */
   const GpgpMeasureInfo* measures;
+  uint32_t contextCount; /**< As GpgpSpawnInfo::contextCount. Such axioms have results without terminals. */
+  uint32_t fieldCount;
+  /** As GpgpSpawnInfo::fields, with the values in host memory (GpgpGroundField::values). */
+  const GpgpSpawnField* fields;
 } GpgpEvaluationInfo;
 #define GPGP_EVALUATION_INFO_INIT GPGP_INIT(GpgpEvaluationInfo, GPGP_STRUCTURE_EVALUATION_INFO)
 

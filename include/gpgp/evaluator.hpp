@@ -66,6 +66,10 @@ public:
   [[nodiscard]] GpgpResult starts(uint32_t& count, GpgpGrammarStart* starts) const noexcept {
     return gpgpGetEvaluatorStarts(get(), &count, starts);
   }
+  /// gpgpGetEvaluatorFields, with count as for terminals().
+  [[nodiscard]] GpgpResult fields(uint32_t& count, const char** names) const noexcept {
+    return gpgpGetEvaluatorFields(get(), &count, names);
+  }
   /// gpgpFindEvaluatorStart
   Result<uint32_t> start(const char* name) const noexcept {
     uint32_t value = 0;

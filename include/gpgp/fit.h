@@ -49,6 +49,8 @@ enum {
 
 /** A search. */
 typedef struct GpgpFit {
+  GpgpStructureType sType;
+  const void* pNext;
   GpgpAxiom base;                     /**< All that no parameter varies. Candidates have ids 0, 1, 2 and so on. */
   const GpgpFitParameter* parameters; /**< Each field at most once. */
   uint32_t parameterCount;            /**< 1 to 5. */
@@ -59,6 +61,7 @@ typedef struct GpgpFit {
   /** Of annealing, in units of the score: from the first round to the last. At least 0. */
   float startTemperature, endTemperature;
 } GpgpFit;
+#define GPGP_FIT_INIT GPGP_INIT(GpgpFit, GPGP_STRUCTURE_FIT)
 
 /** A candidate and its score. */
 typedef struct GpgpFitCandidate {
@@ -67,14 +70,14 @@ typedef struct GpgpFitCandidate {
 } GpgpFitCandidate;
 
 /** Makes the axioms of a round. current: GpgpFitCandidate[candidates], as gpgpAcceptAxioms left them; not read in round
- *  0. Errors: INVALID_ARGUMENT. @threads any @lifetime call */
+ *  0. Errors: INVALID_ARGUMENT, INVALID_STRUCT. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpProposeAxioms(const GpgpFit* fit, uint32_t round, const GpgpFitCandidate* current,
                                                 GpgpAxiom* proposed);
 
 /** Decides which axioms of a round go on. scores: of each of the proposed axioms; one that is no number is worse than
  *  all. current: written in round 0, later read and changed where a candidate is accepted. best: optional, the best of
  *  all rounds; written in round 0, later changed where one is better.
- *  Errors: INVALID_ARGUMENT. @threads any @lifetime call */
+ *  Errors: INVALID_ARGUMENT, INVALID_STRUCT. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpAcceptAxioms(const GpgpFit* fit, uint32_t round, const GpgpAxiom* proposed,
                                                const double* scores, GpgpFitCandidate* current, GpgpFitCandidate* best);
 
@@ -82,13 +85,16 @@ GPGP_API GpgpResult GPGP_CALL gpgpAcceptAxioms(const GpgpFit* fit, uint32_t roun
  *  sumWeights[m] * |sums[m] / 65536 - sums wanted|, and
  *  occupancyWeight * (cells that are wrongly occupied or wrongly empty) / (cells of the target, at least 1). */
 typedef struct GpgpFitTarget {
+  GpgpStructureType sType;
+  const void* pNext;
   double sums[GPGP_MAX_MEASURES];
   double sumWeights[GPGP_MAX_MEASURES]; /**< 0: does not matter. */
   double occupancyWeight;
   uint32_t targetCells; /**< The bits of GpgpOccupancy::target that are set. */
 } GpgpFitTarget;
+#define GPGP_FIT_TARGET_INIT GPGP_INIT(GpgpFitTarget, GPGP_STRUCTURE_FIT_TARGET)
 
-/** Turns measures into scores. Errors: INVALID_ARGUMENT. @threads any @lifetime call */
+/** Turns measures into scores. Errors: INVALID_ARGUMENT, INVALID_STRUCT. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpScoreMeasures(const GpgpFitTarget* target, const GpgpAxiomMeasures* measures,
                                                 uint32_t count, double* scores);
 

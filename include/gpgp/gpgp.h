@@ -2,7 +2,9 @@
 #ifndef GPGP_H
 #define GPGP_H
 #include <gpgp/atlas.h>
+#include <gpgp/cga.h>
 #include <gpgp/core.h>
+#include <gpgp/detail.h>
 #include <gpgp/evaluator.h>
 #include <gpgp/fit.h>
 #include <gpgp/lottie.h>

@@ -15,30 +15,27 @@
 extern "C" {
 #endif
 
-/** Numbers on a grid over the ground plane, bilinear in between, constant beyond. */
-typedef struct GpgpGroundField {
-  const float* values;    /**< [height][width], rows along x, first row at the least z. Finite. @lifetime call */
-  uint32_t width, height; /**< At least 1, at most 16384. */
-  float min[2], max[2];   /**< x and z of the first and of the last value, metres. min is less than max, but for a
-                           *   width or height of 1. */
-} GpgpGroundField;
-
 /** What is scattered where. */
 typedef struct GpgpScatterInfo {
+  GpgpStructureType sType;
+  const void* pNext;
   GpgpAxiom base; /**< Of all axioms. Each point is added to where its transform moves. */
   float distance; /**< Metres, at least 1e-3. No two points are nearer, but for the rounding of places to floats. */
   uint32_t seed;  /**< Of the pattern. Other seeds are other patterns. */
   float min[2], max[2]; /**< The rectangle: x and z, metres, without its upper edges. At most 65536 distances from 0,
                          *   and 2048 distances wide and deep. */
-  const GpgpGroundField* density; /**< Optional. How many of the points are kept: 0 none, 1 all. @lifetime call */
-  const GpgpGroundField* heights; /**< Optional. Metres. The axiom's lower face stands on it. Else 0. @lifetime call */
-  float minHeight, maxHeight;     /**< Points whose ground is lower or higher are left out. Both 0: none are. */
+  /** Optional. How many of the points are kept: 0 none, 1 all. Its values are finite. @lifetime call */
+  const GpgpGroundField* density;
+  /** Optional. Metres, finite. The axiom's lower face stands on it. Else 0. @lifetime call */
+  const GpgpGroundField* heights;
+  float minHeight, maxHeight; /**< Points whose ground is lower or higher are left out. Both 0: none are. */
 } GpgpScatterInfo;
+#define GPGP_SCATTER_INFO_INIT GPGP_INIT(GpgpScatterInfo, GPGP_STRUCTURE_SCATTER_INFO)
 
 /** Makes the axioms of a rectangle: cell by cell, row after row. id and seed of each differ from those of all others
  *  nearby, and do not depend on the rectangle. count is the capacity of axioms on input and the number of all points on
  *  output. If axioms is NULL, only the count is returned. If it is too small, the function fills it and returns
- *  GPGP_INCOMPLETE. Errors: INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. @threads any @lifetime call */
+ *  GPGP_INCOMPLETE. Errors: INVALID_ARGUMENT, INVALID_STRUCT, OUT_OF_HOST_MEMORY. @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpScatterAxioms(const GpgpScatterInfo* info, uint32_t* count, GpgpAxiom* axioms);
 
 #ifdef __cplusplus

@@ -29,8 +29,11 @@ typedef struct GpgpAxiom {
   /** The rule or axiom line to start at, as an index into gpgpGetGrammarStarts. It decides the type of the start shape.
    *  GPGP_AXIOM_DEFAULT_START: the first axiom line of the grammar. */
   uint32_t start;
-  float attribute;      /**< Custom attribute, which shapes inherit. NaN: a value in [0, 1) that the seed determines. */
-  uint32_t reserved[5]; /**< 0. */
+  float attribute; /**< Custom attribute, which shapes inherit. NaN: a value in [0, 1) that the seed determines. */
+  /** Not 0: OutOfView() of its shapes is 2^100, also without a camera. An engine sets it where the visibility service
+   *  saw nothing of the axiom, so that rules leave out what is there but hidden. */
+  uint32_t hidden;
+  uint32_t reserved[4]; /**< 0. */
 } GpgpAxiom;
 #define GPGP_AXIOM_DEFAULT_START 0xffffffffu
 
@@ -228,6 +231,12 @@ typedef struct GpgpGrammarStart {
   uint32_t axiomLine; /**< 1: an axiom line, 0: a rule. */
 } GpgpGrammarStart;
 
+/** Lists the names of the fields that a grammar reads, at most GPGP_MAX_FIELDS: see GpgpSpawnField. count is the
+ *  capacity of names on input and the number of all fields on output. If names is NULL, only the count is returned. If
+ *  it is too small, the function fills it and returns GPGP_INCOMPLETE. @threads any @lifetime handle */
+GPGP_API GpgpResult GPGP_CALL gpgpGetGrammarFields(GpgpAsset grammar, uint32_t* count, const char** names);
+#define GPGP_MAX_FIELDS 8
+
 /** Lists the starts of a grammar: its rules in order, then its axiom lines in order. count is the capacity of starts on
  *  input and the number of all starts on output. If starts is NULL, only the count is returned. If it is too small, the
  *  function fills it and returns GPGP_INCOMPLETE. @threads any */
@@ -281,6 +290,10 @@ typedef uint64_t GpgpSpawnerFlags;
 /** The spawner writes GpgpCompactInstance instead of GpgpInstance. Its output is always sorted by bucket, so
  *  maxTerminals limits it. GPGP_SPAWN_REGIONS also needs GPGP_SPAWNER_ORDERED then. Not allowed with vertices. */
 #define GPGP_SPAWNER_COMPACT ((GpgpSpawnerFlags)2)
+/** The spawner has no interpreter, which most of the time of gpgpPrewarm goes into. It derives grammars by the kernels
+ *  that they were baked with: until gpgpPrewarmGrammar has returned, recording returns NOT_READY. A grammar without a
+ *  kernel that fits the device and the spawner is refused (UNSUPPORTED), by gpgpPrewarmGrammar and by recordings. */
+#define GPGP_SPAWNER_KERNELS_ONLY ((GpgpSpawnerFlags)4)
 
 /** Budgets of a spawner. What does not fit a budget is counted in the report. */
 typedef struct GpgpSpawnerCreateInfo {
@@ -326,7 +339,8 @@ GPGP_API GpgpResult GPGP_CALL gpgpCreateSpawner(GpgpContext context, const GpgpS
 
 /** Compiles those kernels of a baked grammar that are for this device, on the calling thread. The pipelines belong to
  *  the grammar and serve all spawners of the context. Until the function has returned, recordings run the interpreter,
- *  which derives the same. Grammars without such kernels always run it. Recordings and gpgpAdvance may run at the same
+ *  which derives the same. Grammars without such kernels always run it, or are refused (UNSUPPORTED) by spawners with
+ *  GPGP_SPAWNER_KERNELS_ONLY. Recordings and gpgpAdvance may run at the same
  *  time. Both handles must live until the function returns.
  *  Errors: INVALID_HANDLE, UNSUPPORTED, OUT_OF_..._MEMORY, DEVICE_LOST. @threads handle, and one call at a time for a
  *  grammar */
@@ -360,7 +374,33 @@ typedef struct GpgpSpawnCamera {
   float viewProjection[16];
   float position[3]; /**< World space, metres. Distances are measured from here, with parallel projections too. */
   uint32_t height;   /**< Height of the picture in pixels, for ScreenSize(). Not 0. */
+  /** Times ScreenSize(): less than 1 is coarser, more is finer. 0: 1. gpgpAdaptDetail chooses it by a budget. Distances
+   *  are not changed by it. */
+  float detail;
 } GpgpSpawnCamera;
+
+/** Numbers on a grid over the ground plane, bilinear in between, constant beyond. */
+typedef struct GpgpGroundField {
+  const float* values;    /**< [height][width], rows along x, first row at the least z. @lifetime call */
+  uint32_t width, height; /**< At least 1, at most 16384. */
+  float min[2], max[2];   /**< x and z of the first and of the last value, metres. min is less than max, but for a
+                           *   width or height of 1. */
+} GpgpGroundField;
+
+/** A field of the world, such as the heights of a terrain or a mask, which the rules of a grammar read: Field(name) is
+ *  its value at a shape's centre, Field(name, x, z) x and z metres from there along the shape's axes, both seen from
+ *  above. In units of the field; positions are those of the world. Values that are NaN count as 0.
+ *
+ *  Fields lie in a buffer of floats. The same values give the same terminals on every device and on the CPU, which
+ *  images with a sampler do not. An engine with an image copies it once (vkCmdCopyImageToBuffer), or writes the buffer
+ *  in a shader. */
+typedef struct GpgpSpawnField {
+  const char* name; /**< As the grammar writes it. @lifetime call */
+  /** Its grid. gpgpEvaluate reads grid.values. Recordings ignore them, and read GpgpSpawnInfo::fieldValues. */
+  GpgpGroundField grid;
+  /** Recordings: bytes from the beginning of fieldValues to float[height][width]. A multiple of 4. */
+  VkDeviceSize offset;
+} GpgpSpawnField;
 
 /** The range of an axiom in GpgpSpawnInfo::instances. 16 bytes (std430). */
 typedef struct GpgpAxiomRange {
@@ -483,6 +523,16 @@ typedef struct GpgpSpawnInfo {
    *  terminals were not measured. Vertices must be written. Not with ranges, nor, unless the spawner is ordered, with
    *  GPGP_SPAWN_REGIONS. @lifetime call */
   const GpgpMeasureInfo* measures;
+  /** The last ones of the axioms are context: what they register with Collider exists for the other axioms, and their
+   *  terminals are neither written nor counted. So parts of a world that are recorded one by one fit together: each
+   *  has the neighbours that can reach into it as context. At most axiomCount; 0 with axiomCounter. */
+  uint32_t contextCount;
+  uint32_t fieldCount;
+  /** The fields that the grammar reads, in any order. Others are ignored. One that is missing is INVALID_ARGUMENT; the
+   *  message names it, and the first rule that reads it. @lifetime call */
+  const GpgpSpawnField* fields;
+  /** Input. The values of all fields, as floats. STORAGE usage. Not needed by grammars without fields. */
+  GpgpBuffer fieldValues;
 } GpgpSpawnInfo;
 #define GPGP_SPAWN_INFO_INIT GPGP_INIT(GpgpSpawnInfo, GPGP_STRUCTURE_SPAWN_INFO)
 
@@ -522,6 +572,7 @@ typedef struct GpgpSpawnReport {
    *  executed. Valid until the next gpgpAdvance. */
   const GpgpAxiomMeasures* axioms;
   uint32_t axiomCount;
+  float detail; /**< GpgpSpawnCamera::detail of the recording; 1 for 0, and without a camera. */
 } GpgpSpawnReport;
 #define GPGP_SPAWN_REPORT_INIT GPGP_INIT(GpgpSpawnReport, GPGP_STRUCTURE_SPAWN_REPORT)
 

@@ -46,6 +46,10 @@ public:
   [[nodiscard]] GpgpResult starts(uint32_t& count, GpgpGrammarStart* starts) const noexcept {
     return gpgpGetGrammarStarts(get(), &count, starts);
   }
+  /// gpgpGetGrammarFields, with count as for terminals().
+  [[nodiscard]] GpgpResult fields(uint32_t& count, const char** names) const noexcept {
+    return gpgpGetGrammarFields(get(), &count, names);
+  }
   /// gpgpFindGrammarStart: the value for GpgpAxiom::start of a rule, or of a grammar that was linked, by its name.
   Result<uint32_t> start(const char* name) const noexcept {
     uint32_t value = 0;
@@ -229,6 +233,10 @@ public:
   Value shapeCustomAttribute() const noexcept { return own({GPGP_VALUE_SHAPE_CUSTOM_ATTRIBUTE, 0}); }
   Value cameraDistance() const noexcept { return own({GPGP_VALUE_CAMERA_DISTANCE, 0}); }
   Value screenSize() const noexcept { return own({GPGP_VALUE_SCREEN_SIZE, 0}); }
+  /// A field of the world, x and z metres along the shape's axes from its centre.
+  Value field(const char* name, const Value& x = 0, const Value& z = 0) noexcept {
+    return own(gpgpAddField(get(), name, x.get(), z.get()));
+  }
   Value outOfView() const noexcept { return own({GPGP_VALUE_OUT_OF_VIEW, 0}); }
 
   Operator translate(const Value& x, const Value& y, const Value& z, const Successor& to) noexcept {

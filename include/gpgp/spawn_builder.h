@@ -148,6 +148,12 @@ enum {
   GPGP_OPERATOR_TO_ROOF_FACE = 26
 };
 
+/** Returns the value of a field of the world (GpgpSpawnField) at x and z metres along the shape's axes from its centre.
+ *  Both 0: at the centre. A grammar reads at most GPGP_MAX_FIELDS fields. In libgpgp_compiler. @threads handle
+ *  @lifetime call */
+GPGP_API GpgpGrammarValue GPGP_CALL gpgpAddField(GpgpGrammarBuilder builder, const char* name, GpgpGrammarValue x,
+                                                 GpgpGrammarValue z);
+
 typedef uint32_t GpgpGrammarOperator; /**< An operator of a builder. 0: none. */
 
 /** Where an operator sends shapes: to a rule or terminal by name, or to another operator. */

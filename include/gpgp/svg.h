@@ -36,6 +36,8 @@ typedef struct GpgpSvgTextSpan {
   float letterSpacing;  /**< units after each grapheme */
   VkBool32 italic, smallCaps, unkerned; /**< unkerned: kerning is off */
   VkBool32 unligated;                   /**< optional ligatures are off */
+  float stretch;                        /**< percent, as of font-stretch: 50 is ultra-condensed, 100 or 0 normal */
+  VkBool32 vertical;                    /**< the line goes down: fonts may have glyphs of their own for it */
 } GpgpSvgTextSpan;
 
 /** A line of an SVG's text. Spans cover it without gaps, in order. */
@@ -65,6 +67,7 @@ typedef struct GpgpSvgGlyph {
   const uint8_t* image;
   uint32_t imageWidth, imageHeight;
   float imageBox[4]; /**< where it lies: left, top, right, bottom in em, +Y down */
+  VkBool32 vertical; /**< VK_TRUE: the font's own glyph for vertical lines, in which it stands upright */
 } GpgpSvgGlyph;
 typedef void(GPGP_CALL* GpgpSvgGlyphFn)(void* glyphUserData, const GpgpSvgGlyph* glyph);
 /** Shapes a line, and calls glyphFn for each of its glyphs from left to right. Any other result than SUCCESS leaves

@@ -158,9 +158,10 @@ typedef struct GpgpGlyphOutline {
   /** Box of the paths' points, control points included: left, top, right, bottom; all 0 without paths. A stroke
    *  reaches half its width beyond the box, and its miters further. */
   float box[4];
-  const GpgpGlyphImage* image; /**< bitmap glyphs: the image, instead of paths; otherwise NULL */
-  /** VK_TRUE: part of the glyph is not supported (sweep gradients, composite modes other than source-over, SVG). A
-   *  warning names the glyph. */
+  /** Bitmap glyphs, and colour glyphs whose paints paths cannot show (sweep gradients, composite modes other than
+   *  source-over, shapes in shapes): the image, instead of paths. Otherwise NULL. */
+  const GpgpGlyphImage* image;
+  /** VK_TRUE: part of the glyph is not supported (variations of paints, SVG). A warning names the glyph. */
   VkBool32 incomplete;
   /** VK_TRUE: the glyph is broken in the font. This is then the outline of glyph 0, or empty if that is broken too. A
    *  warning (INVALID_DATA) names the glyph. */

@@ -78,6 +78,10 @@ typedef struct GpgpTileInfo {
   uint32_t capacity;
   GpgpTileFlags flags;
   const GpgpSpawnCamera* camera; /**< As GpgpSpawnInfo::camera. @lifetime call */
+  uint32_t contextCount;         /**< As GpgpSpawnInfo::contextCount: the last ones are of neighbours. */
+  uint32_t fieldCount;
+  const GpgpSpawnField* fields; /**< As GpgpSpawnInfo::fields. @lifetime call */
+  GpgpBuffer fieldValues;       /**< As GpgpSpawnInfo::fieldValues. */
 } GpgpTileInfo;
 #define GPGP_TILE_INFO_INIT GPGP_INIT(GpgpTileInfo, GPGP_STRUCTURE_TILE_INFO)
 

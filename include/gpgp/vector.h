@@ -74,7 +74,7 @@ typedef struct GpgpDrawingCreateInfo {
  *  until the new one is resident, then destroy it.
  *  Errors: INVALID_DATA, INVALID_ARGUMENT (the message gives the path's index), INVALID_HANDLE, IO, OUT_OF_..._MEMORY,
  *  UNSUPPORTED (more than 2^29 patches in the drawing; more than 2^21 points or 65536 dashes in a stroke; a path that
- *  crosses itself millions of times). @threads any @lifetime call */
+ *  crosses itself more than 2^22 times, or all paths together more than 2^23 times). @threads any @lifetime call */
 GPGP_API GpgpResult GPGP_CALL gpgpCreateDrawing(GpgpContext context, const GpgpDrawingCreateInfo* info,
                                                 GpgpAsset* drawing);
 

@@ -311,7 +311,7 @@ typedef struct GpgpVisibilityInfo {
    *  of a cell. A triangle is visible if any camera sees it. */
   const GpgpCamera* moreCameras;
   uint32_t moreCameraCount; /**< less than maxCameras */
-  uint32_t width, height;   /**< viewport of each camera, pixels */
+  uint32_t width, height;   /**< viewport of each camera, pixels; exact: at most 229376 rows of all cameras */
   /** Standard, reference: samples per pixel and direction, a power of two up to 256; standard: at most maxSamples.
    *  0: 1 for standard, 64 for reference. */
   uint32_t samples;

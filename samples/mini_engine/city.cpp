@@ -5,6 +5,8 @@
 
 #include "shaders/mini_city_frag.spv.h"
 #include "shaders/mini_city_vert.spv.h"
+#include "shaders/mini_fading_frag.spv.h"
+#include "shaders/mini_fading_vert.spv.h"
 
 #include <algorithm>
 #include <array>
@@ -52,8 +54,10 @@ void GPGP_CALL onCompileMessage(void*, const GpgpCompileMessage* message) {
 
 } // namespace
 
-City::City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string& grammarFile, bool watch)
-    : gpgp_(gpgp) {
+City::City(Device& device, Gpgp& gpgp, const Forward& forward, const CityOptions& options) : gpgp_(gpgp) {
+  const std::string& grammarFile = options.grammarFile;
+  budget_.instances = options.budget;
+  if (options.budget) gpgp.check(gpgpAdaptDetail(&budget_, nullptr, 0, &detail_), "gpgpAdaptDetail");
   // A shipped game would load a baked grammar; the sample compiles the text.
   const std::vector<char> text = readFile(grammarFile);
   auto source = gpgp::init<GpgpGrammarSource>();
@@ -77,12 +81,12 @@ City::City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string
   gpgp.shareScratch(spawner_);
   gpgp.check(spawner_.prewarm(), "gpgpPrewarm");
   makeMaterials();
-  if (watch) {
-    GrammarWatchOptions options;
-    options.files = {{grammarFile, {text.begin(), text.end()}}};
-    options.kernels = true;
-    options.say = [](const std::string& message) { std::fprintf(stderr, "%s\n", message.c_str()); };
-    watch_ = std::make_unique<GrammarWatch>(gpgp.context, spawner_, options);
+  if (options.watch) {
+    GrammarWatchOptions watch;
+    watch.files = {{grammarFile, {text.begin(), text.end()}}};
+    watch.kernels = true;
+    watch.say = [](const std::string& message) { std::fprintf(stderr, "%s\n", message.c_str()); };
+    watch_ = std::make_unique<GrammarWatch>(gpgp.context, spawner_, watch);
   }
 
   // The engine's buffers. gpgp fills instances, and in each draw the count and the first instance; the rest is set
@@ -115,6 +119,12 @@ City::City(Device& device, Gpgp& gpgp, const Forward& forward, const std::string
                      {2, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(GpgpInstance, transform) + 16},
                      {3, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(GpgpInstance, transform) + 32},
                      {4, 1, VK_FORMAT_R32G32B32_UINT, offsetof(GpgpInstance, bucket)}};
+  if (options.budget) { // an instance's attribute is the share of its pixels that it keeps
+    info.vertex.assign(std::begin(mini_fading_vert), std::end(mini_fading_vert));
+    info.fragment.assign(std::begin(mini_fading_frag), std::end(mini_fading_frag));
+    info.attributes.push_back({5, 1, VK_FORMAT_R32_UINT, offsetof(GpgpInstance, seed)});
+    info.attributes.push_back({6, 1, VK_FORMAT_R32_SFLOAT, offsetof(GpgpInstance, attribute)});
+  }
   info.pushBytes = 96;
   pipeline_ = Pipeline(device, forward.renderPass(), Forward::kSamples, info);
 }
@@ -137,7 +147,7 @@ void City::use(gpgp::Grammar grammar) {
   makeMaterials();
 }
 
-void City::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
+void City::prepare(VkCommandBuffer commands, const GpgpFrame& frame, const Camera& camera, uint32_t height) {
   if (auto next = watch_ ? watch_->update() : std::nullopt) use(std::move(*next));
   auto info = gpgp::init<GpgpSpawnInfo>();
   info.base.tag = frame.current;
@@ -147,6 +157,14 @@ void City::prepare(VkCommandBuffer commands, const GpgpFrame& frame) {
   info.axiomCount = axiomCount_;
   info.instances = instances_.forGpgp(kVertexInput, kVertexInput);
   info.draws = draws_.forGpgp(kIndirect, kIndirect);
+  GpgpSpawnCamera seen{};
+  if (budget()) {
+    for (int i = 0; i < 16; ++i) seen.viewProjection[i] = camera.viewProjection[i / 4][i % 4];
+    for (int i = 0; i < 3; ++i) seen.position[i] = camera.eye[i];
+    seen.height = height;
+    seen.detail = detail_.detail;
+    info.camera = &seen;
+  }
   if (gpgp_.check(spawner_.recordPrepare(commands, frame, info), "gpgpRecordPrepareSpawn") == GPGP_SUCCESS)
     prepared_ = true;
 }
@@ -174,6 +192,9 @@ void City::collect() {
   for (auto next = spawner_.report(); next; next = spawner_.report()) {
     report_ = *next;
     ++reports_;
+    if (!budget()) continue;
+    exceeded_ += report_.terminals > budget();
+    gpgp_.check(gpgpAdaptDetail(&budget_, &report_, 0, &detail_), "gpgpAdaptDetail");
   }
 }
 

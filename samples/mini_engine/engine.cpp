@@ -11,11 +11,9 @@
 namespace mini {
 Engine::Engine(Device& device, Target& target, const EngineOptions& options)
     : device_(device), target_(target), forward_(device, target.format(), target.finalLayout()),
-      gpgp_(device, kFramesInFlight),
-      city_(device, gpgp_, forward_,
-            options.live.empty() ? options.dataFolder + "/grammars/building.pga" : options.live, options.watch),
-      sight_(device, gpgp_, forward_, levelModel(options.dataFolder)), farther_(options.decoupled.farther),
-      eyes_(options.stereo ? 2 : 1), script_(options.inputs), frames_(device, kFramesInFlight) {
+      gpgp_(device, kFramesInFlight), sight_(device, gpgp_, forward_, levelModel(options.dataFolder)),
+      farther_(options.decoupled.farther), eyes_(options.stereo ? 2 : 1), script_(options.inputs),
+      frames_(device, kFramesInFlight) {
   if (options.decoupled.on)
     decoupled_ =
         std::make_unique<Decoupled>(device, gpgp_, forward_, levelModel(options.dataFolder), options.decoupled);
@@ -24,8 +22,19 @@ Engine::Engine(Device& device, Target& target, const EngineOptions& options)
   else
     hud_ = std::make_unique<Hud>(device, gpgp_, forward_, options.dataFolder + "/svg/hud.svg",
                                  options.dataFolder + "/fetched/svg/tiger.svgz");
+  if (LiveCga::takes(options.live))
+    town_ = std::make_unique<Town>(device, forward_);
+  else
+    city_ = std::make_unique<City>(
+        device, gpgp_, forward_,
+        CityOptions{options.live.empty() ? options.dataFolder + "/grammars/building.pga" : options.live, options.watch,
+                    options.budget});
   if (!options.live.empty()) {
-    live_ = std::make_unique<LiveGrammar>(gpgp_.context, options.live);
+    if (town_)
+      live_ = (cga_ = std::make_unique<LiveCga>(options.live, townLots())).get();
+    else
+      live_ = (grammar_ = std::make_unique<LiveGrammar>(gpgp_.context, options.live)).get();
+    moves_ = options.budget != 0; // which is of what the camera sees
     panel_ = std::make_unique<LivePanel>(device, gpgp_, forward_, target.format(), options.dataFolder);
   }
   resize();
@@ -71,7 +80,9 @@ void Engine::run(uint32_t frames) {
       target_.setTitle("gpgp mini engine: " + std::to_string(decoupled_->shadingReport().visible) +
                        " triangles shaded (F freezes, M method, 1 shaded, 2 overlay, 3 density)");
     } else if (i % 30 == 29) {
-      target_.setTitle("gpgp mini engine: " + std::to_string(city_.report().terminals) + " spawned, " +
+      target_.setTitle("gpgp mini engine: " +
+                       (town_ ? std::to_string(town_->triangles()) + " triangles, "
+                              : std::to_string(city_->report().terminals) + " spawned, ") +
                        std::to_string((screen_ ? screen_->report() : hud_->report()).paths) + " paths, " +
                        std::to_string(sight_.report().visible) + " triangles visible");
     }
@@ -83,7 +94,7 @@ void Engine::run(uint32_t frames) {
 
 void Engine::frame() {
   VkCommandBuffer commands = frames_.begin();
-  if (!live_ && (!screen_ || !screen_->game().paused)) ++step_;
+  if (moves_ && (!screen_ || !screen_->game().paused)) ++step_;
   std::optional<Acquired> acquired = target_.acquire(frames_.slot());
   while (!acquired) {
     resize();
@@ -108,16 +119,20 @@ void Engine::runScript(const std::string& file) {
       continue;
     case LiveCommand::set:
       if (!live_->set(command.name, command.value))
-        throw std::runtime_error(live_->file() + " has no variable " + command.name);
+        throw std::runtime_error(live_->file() + " has no attribute " + command.name + " that can be " + command.value);
       break;
     case LiveCommand::write: saveAs(command.name, live_->file()); break;
     case LiveCommand::picture:
       for (uint32_t i = 0; i <= kFramesInFlight; ++i) frame(); // reports are of this state
       check(vkDeviceWaitIdle(device_.device), "vkDeviceWaitIdle");
       target_.writePicture(command.name);
-      std::printf("live        %s: %u instances, key hash %08x%08x, errors at %.0f,%.0f to %.0f,%.0f\n",
-                  command.name.c_str(), city_.report().instancesWritten, city_.report().keyHash[1],
-                  city_.report().keyHash[0], static_cast<double>(panel_->errorBox()[0]),
+      if (town_)
+        std::printf("live        %s: %u triangles, mesh hash %016llx", command.name.c_str(), town_->triangles(),
+                    static_cast<unsigned long long>(town_->hash()));
+      else
+        std::printf("live        %s: %u instances, key hash %08x%08x", command.name.c_str(),
+                    city_->report().instancesWritten, city_->report().keyHash[1], city_->report().keyHash[0]);
+      std::printf(", errors at %.0f,%.0f to %.0f,%.0f\n", static_cast<double>(panel_->errorBox()[0]),
                   static_cast<double>(panel_->errorBox()[1]), static_cast<double>(panel_->errorBox()[2]),
                   static_cast<double>(panel_->errorBox()[3]));
       for (const LiveError& error : live_->errors())
@@ -127,9 +142,9 @@ void Engine::runScript(const std::string& file) {
     uint32_t frames = 0;
     while (live_->version() == version && ++frames <= 100) frame();
     check(vkDeviceWaitIdle(device_.device), "vkDeviceWaitIdle");
-    std::printf("change      %s: in the picture after %u frames, %.1f ms; %.1f ms of them to compile\n",
+    std::printf("change      %s: in the picture after %u frames, %.1f ms; %.1f ms of them to compile%s\n",
                 command.name.c_str(), frames, std::chrono::duration<double, std::milli>(Clock::now() - start).count(),
-                live_->compileMilliseconds());
+                live_->compileMilliseconds(), town_ ? " and derive" : "");
   }
 }
 
@@ -185,6 +200,18 @@ void Engine::recordDecoupled(VkCommandBuffer commands, const Acquired& acquired)
   vkCmdEndRenderPass(commands);
 }
 
+/// What this frame shows.
+void Engine::updateLive() {
+  if (grammar_)
+    if (auto next = grammar_->update()) city_->use(std::move(*next));
+  if (cga_)
+    if (auto next = cga_->update()) town_->use(*std::move(next), frames_.number());
+  panel_->update(*live_,
+                 town_ ? std::to_string(town_->triangles()) + " triangles"
+                       : std::to_string(city_->report().instancesWritten) + " instances",
+                 target_.extent());
+}
+
 void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
   if (decoupled_) {
     recordDecoupled(commands, acquired);
@@ -197,12 +224,9 @@ void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
   for (uint32_t eye = 0; eye < eyes_; ++eye)
     eyes[eye] = orbit(0.0f, 84.0f, 36.0f, 0.80f, eyes_ == 1 ? 0.0f : (static_cast<float>(eye) - 0.5f) * kEyes);
   if (screen_) screen_->update(eyes);
-  if (live_) {
-    if (auto next = live_->update()) city_.use(std::move(*next)); // what this frame shows
-    panel_->update(*live_, city_.report(), target_.extent());
-  }
+  if (live_) updateLive();
   gpgp_.check(gpgp_.context.recordUpload(commands, frames_.number()).code(), "gpgpRecordUpload");
-  city_.prepare(commands, frames_.number());
+  if (city_) city_->prepare(commands, frames_.number(), camera, target_.extent().height);
   sight_.prepare(commands, frames_.number(), camera, target_.extent());
   if (screen_)
     screen_->prepare(commands, frames_.number());
@@ -216,7 +240,8 @@ void Engine::record(VkCommandBuffer commands, const Acquired& acquired) {
     if (eyes_ > 1)
       forward_.setArea(commands, {{static_cast<int32_t>(eye * eyeWidth), 0}, {eyeWidth, forward_.extent().height}});
     forward_.drawBackdrop(commands, eyes[eye]);
-    city_.draw(commands, eyes[eye]);
+    if (city_) city_->draw(commands, eyes[eye]);
+    if (town_) town_->draw(commands, eyes[eye]);
     sight_.draw(commands, eyes[eye]);
     if (screen_) screen_->draw(commands, frames_.number(), eye);
   }
@@ -251,7 +276,8 @@ void Engine::collect() {
     decoupled_->collect();
     return;
   }
-  city_.collect();
+  if (city_) city_->collect();
+  if (town_) town_->collect(frames_.number());
   if (hud_) hud_->collect();
   if (screen_) screen_->collect();
   if (panel_) panel_->collect();
@@ -260,13 +286,12 @@ void Engine::collect() {
 
 bool Engine::allWell() const {
   if (decoupled_) return decoupled_->allWell();
-  return city_.report().base.status == GPGP_SUCCESS && city_.reports() > 0 &&
+  return (town_ ? town_->triangles() > 0 : city_->report().base.status == GPGP_SUCCESS && city_->reports() > 0) &&
          (screen_ ? screen_->allWell() : hud_->report().base.status == GPGP_SUCCESS && hud_->reports() > 0) &&
          (!panel_ || panel_->well()) && sight_.report().base.status == GPGP_SUCCESS && sight_.reports() > 0;
 }
 
 void Engine::printSummary() const {
-  const GpgpSpawnReport& spawn = city_.report();
   const GpgpVisibilityReport& sample = sight_.report();
   const auto line = [](const char* service, const GpgpReportHeader& base) {
     std::printf("%-11s %-20s frame %llu: ", service, gpgpResultString(base.status),
@@ -290,9 +315,18 @@ void Engine::printSummary() const {
           slices, all);
     return;
   }
-  line("spawn", spawn.base);
-  std::printf("%u buildings became %u instances in %u rounds, key hash %08x%08x\n", city_.buildings(),
-              spawn.instancesWritten, spawn.rounds, spawn.keyHash[1], spawn.keyHash[0]);
+  if (town_) {
+    std::printf("town        %u triangles of %zu lots, mesh hash %016llx\n", town_->triangles(), townLots().size(),
+                static_cast<unsigned long long>(town_->hash()));
+  } else {
+    const GpgpSpawnReport& spawn = city_->report();
+    line("spawn", spawn.base);
+    std::printf("%u buildings became %u instances in %u rounds, key hash %08x%08x\n", city_->buildings(),
+                spawn.instancesWritten, spawn.rounds, spawn.keyHash[1], spawn.keyHash[0]);
+    if (city_->budget())
+      std::printf("detail      %.3f of the camera, for at most %u instances; %u of %u reports had more\n",
+                  static_cast<double>(spawn.detail), city_->budget(), city_->exceeded(), city_->reports());
+  }
   const GpgpCanvasReport& canvas = screen_ ? screen_->report() : hud_->report();
   line("vector", canvas.base);
   std::printf("%u paths, %u tile entries\n", canvas.paths, canvas.tileEntries);

@@ -8,6 +8,7 @@
 #include "screen.h"
 #include "sight.h"
 #include "target.h"
+#include "town.h"
 
 namespace mini {
 
@@ -19,7 +20,8 @@ struct EngineOptions {
   bool stereo = false;       // for two eyes, side by side
   uint32_t score = 0;        // on it at the beginning
   std::vector<Input> inputs; // for it, before the second frame
-  std::string live;          // a grammar file to edit, with a panel; empty: none
+  std::string live;          // a file to edit, with a panel; empty: none
+  uint32_t budget = 0;       // instances of the city, whose detail it chooses; 0: all of them, without a camera
 };
 
 class Engine {
@@ -46,6 +48,7 @@ private:
   void resize();
   void collect();
   void take(const std::vector<Input>& inputs);
+  void updateLive();
   void recordDecoupled(VkCommandBuffer commands, const Acquired& acquired);
   Camera orbit(float angle, float distance, float height, float fieldOfView, float aside = 0) const;
 
@@ -53,13 +56,17 @@ private:
   Target& target_;
   Forward forward_;
   Gpgp gpgp_;
-  City city_;
+  std::unique_ptr<City> city_;
   std::unique_ptr<Hud> hud_;
   std::unique_ptr<Screen> screen_; // instead of the HUD
   Sight sight_;
   std::unique_ptr<Decoupled> decoupled_; // instead of city, HUD and sight
-  std::unique_ptr<LiveGrammar> live_;
-  std::unique_ptr<LivePanel> panel_; // with live_
+  std::unique_ptr<Town> town_;           // instead of the city, of a .cga file
+  std::unique_ptr<LiveGrammar> grammar_; // that is edited
+  std::unique_ptr<LiveCga> cga_;         // or this
+  LiveFile* live_ = nullptr;             // whichever of them
+  std::unique_ptr<LivePanel> panel_;     // with live_
+  bool moves_ = true;                    // the camera
   float farther_ = 1;
   uint32_t eyes_ = 1; // each has its part of the picture, side by side
   uint64_t step_ = 0; // on the camera's path

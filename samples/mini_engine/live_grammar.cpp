@@ -2,31 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
-#include <iterator>
 #include <regex>
 #include <sstream>
 #include <utility>
 
 namespace mini {
-namespace {
-
-/// Nothing where the file is away for the moment, as while an editor replaces it.
-std::optional<std::string> readText(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
-}
-
-std::string lineOf(const std::string& text, uint32_t line) {
-  std::istringstream lines(text);
-  std::string found;
-  for (uint32_t i = 0; i < line; ++i)
-    if (!std::getline(lines, found)) return {};
-  return found;
-}
-
-} // namespace
 
 std::vector<LiveAttribute> attributesOf(const std::string& text) {
   static const std::regex pattern(R"(^\s*var\s+(\w+)\s*=\s*([-+.0-9eE]+)\s*;(\s*//\s*([-+.0-9]+)\s+to\s+([-+.0-9]+))"
@@ -39,7 +19,8 @@ std::vector<LiveAttribute> attributesOf(const std::string& text) {
     const auto number = [&](size_t i) { return std::strtof(match[i].str().c_str(), nullptr); };
     LiveAttribute attribute;
     attribute.name = match[1];
-    attribute.value = attribute.written = number(2);
+    attribute.value = number(2);
+    attribute.written = match[2];
     attribute.min = match[4].matched ? number(4) : std::min(2 * attribute.value, 0.0f);
     attribute.max = match[5].matched ? number(5) : std::max(2 * attribute.value, 0.0f);
     attribute.group = match[7];
@@ -48,26 +29,11 @@ std::vector<LiveAttribute> attributesOf(const std::string& text) {
   return attributes;
 }
 
-std::string LiveError::place() const {
-  return line ? file + ':' + std::to_string(line) + ':' + std::to_string(column) : file;
-}
-
-LiveGrammar::LiveGrammar(GpgpContext context, std::string file) : context_(context), file_(std::move(file)) {
+LiveGrammar::LiveGrammar(GpgpContext context, std::string file) : LiveFile(std::move(file)), context_(context) {
   if (std::optional<std::string> text = readText(file_)) {
     good_ = tried_ = *std::move(text);
     attributes_ = attributesOf(good_);
   }
-}
-
-bool LiveGrammar::set(const std::string& name, float value) {
-  for (LiveAttribute& attribute : attributes_) {
-    if (attribute.name != name) continue;
-    value = std::clamp(value, attribute.min, attribute.max);
-    changed_ = changed_ || value != attribute.value;
-    attribute.value = value;
-    return true;
-  }
-  return false;
 }
 
 std::optional<gpgp::Grammar> LiveGrammar::update() {
@@ -75,9 +41,7 @@ std::optional<gpgp::Grammar> LiveGrammar::update() {
   if (text && *text != tried_) {
     tried_ = *text;
     std::vector<LiveAttribute> attributes = attributesOf(tried_);
-    for (LiveAttribute& to : attributes) // what was set stays so, where the file has not set it otherwise
-      for (const LiveAttribute& from : attributes_)
-        if (from.name == to.name && from.written == to.written) to.value = std::clamp(from.value, to.min, to.max);
+    keepValues(attributes);
     if (auto made = compile(tried_, attributes)) {
       good_ = tried_;
       attributes_ = std::move(attributes);
@@ -86,9 +50,8 @@ std::optional<gpgp::Grammar> LiveGrammar::update() {
       ++version_;
       return made;
     }
-  } else if (!found_.empty()) { // not only in the midst of being written
-    errors_ = std::exchange(found_, {});
-    ++version_;
+  } else {
+    showErrors();
   }
   if (!std::exchange(changed_, false)) return std::nullopt;
   std::vector<LiveError> ofFile = std::move(found_);

@@ -25,7 +25,7 @@ struct LivePanel::Impl {
   bool well = true, released = false;
 
   explicit Impl(Gpgp& g) : gpgp(g) {}
-  void showErrors(const LiveGrammar& grammar, const ImVec2& size);
+  void showErrors(const LiveFile& file, const ImVec2& size);
 };
 
 LivePanel::LivePanel(Device& device, Gpgp& gpgp, const Forward& forward, VkFormat format, const std::string& dataFolder)
@@ -71,7 +71,40 @@ void LivePanel::input(const Input& input) {
   if (input.kind == Input::release) impl_->released = true; // after a frame has seen it down
 }
 
-void LivePanel::update(LiveGrammar& grammar, const GpgpSpawnReport& report, VkExtent2D extent) {
+namespace {
+
+/// True: the person has changed it.
+bool edit(LiveAttribute& attribute) {
+  const char* const name = attribute.name.c_str();
+  switch (attribute.kind) {
+  case LiveAttribute::boolean: {
+    bool on = attribute.value != 0;
+    const bool changed = ImGui::Checkbox(name, &on);
+    attribute.value = on ? 1.0f : 0.0f;
+    return changed;
+  }
+  case LiveAttribute::choice: {
+    bool changed = false;
+    if (!ImGui::BeginCombo(name, attribute.choices[static_cast<size_t>(attribute.value)].c_str())) return false;
+    for (size_t i = 0; i < attribute.choices.size(); ++i)
+      if (ImGui::Selectable(attribute.choices[i].c_str(), static_cast<float>(i) == attribute.value)) {
+        attribute.value = static_cast<float>(i);
+        changed = true;
+      }
+    ImGui::EndCombo();
+    return changed;
+  }
+  case LiveAttribute::colour: return ImGui::ColorEdit3(name, attribute.rgb.data(), ImGuiColorEditFlags_NoInputs);
+  case LiveAttribute::number: break;
+  }
+  return ImGui::SliderFloat(name, &attribute.value, attribute.min, attribute.max,
+                            attribute.step == std::floor(attribute.step) && attribute.step > 0 ? "%.0f" : "%.2f",
+                            ImGuiSliderFlags_AlwaysClamp);
+}
+
+} // namespace
+
+void LivePanel::update(LiveFile& file, const std::string& summary, VkExtent2D extent) {
   ImGuiIO& io = ImGui::GetIO();
   const ImVec2 size{static_cast<float>(extent.width), static_cast<float>(extent.height)};
   io.DisplaySize = size;
@@ -83,36 +116,36 @@ void LivePanel::update(LiveGrammar& grammar, const GpgpSpawnReport& report, VkEx
   ImGui::SetNextWindowPos({size.x - wide - 12, 12}, ImGuiCond_Always);
   ImGui::SetNextWindowSize({wide, 0}, ImGuiCond_Always);
   ImGui::Begin("Grammar", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
-  ImGui::TextUnformatted(grammar.file().substr(grammar.file().find_last_of("/\\") + 1).c_str());
-  ImGui::Text("%u instances", report.instancesWritten);
+  ImGui::TextUnformatted(file.file().substr(file.file().find_last_of("/\\") + 1).c_str());
+  ImGui::TextUnformatted(summary.c_str());
   float label = 0;
-  for (const LiveAttribute& attribute : grammar.attributes())
+  for (const LiveAttribute& attribute : file.attributes())
     label = std::max(label, ImGui::CalcTextSize(attribute.name.c_str()).x);
   ImGui::PushItemWidth(std::max(wide - label - 32, 60.0f));
   std::string group;
-  for (const LiveAttribute& attribute : grammar.attributes()) {
+  for (const LiveAttribute& attribute : file.attributes()) {
     if (attribute.group != group) {
       group = attribute.group;
       ImGui::Separator();
       ImGui::TextUnformatted(group.c_str());
     }
-    float value = attribute.value;
-    if (ImGui::SliderFloat(attribute.name.c_str(), &value, attribute.min, attribute.max, "%.2f",
-                           ImGuiSliderFlags_AlwaysClamp))
-      grammar.set(attribute.name, value);
+    LiveAttribute edited = attribute;
+    if (edit(edited)) file.set(edited.name, edited.text());
+    if (!attribute.description.empty() && ImGui::IsItemHovered())
+      ImGui::SetTooltip("%s", attribute.description.c_str());
   }
   ImGui::PopItemWidth();
   ImGui::End();
 
   std::fill_n(impl_->errorBox, 4, 0.0f);
-  if (!grammar.errors().empty()) impl_->showErrors(grammar, size);
+  if (!file.errors().empty()) impl_->showErrors(file, size);
   ImGui::Render();
 }
 
-void LivePanel::Impl::showErrors(const LiveGrammar& grammar, const ImVec2& size) {
+void LivePanel::Impl::showErrors(const LiveFile& file, const ImVec2& size) {
   constexpr size_t kShown = 4;
   std::vector<std::pair<std::string, bool>> lines; // red?
-  for (const LiveError& error : grammar.errors()) {
+  for (const LiveError& error : file.errors()) {
     if (lines.size() >= 2 * kShown) {
       lines.emplace_back("and more", false);
       break;

@@ -1,9 +1,10 @@
-// The panel of live editing: a grammar's variables as sliders, by group, and the errors of its file over the picture.
-// Dear ImGui, drawn by gpgp::imgui in the forward pass; where that is not built (no_live.cpp), there is no panel.
+// The panel of live editing: a file's attributes as sliders, switches, lists and colours, by group, and the errors of
+// its file over the picture. Dear ImGui, drawn by gpgp::imgui in the forward pass; where that is not built
+// (no_live.cpp), there is no panel.
 #pragma once
 #include "forward.h"
 #include "gpgp_glue.h"
-#include "live_grammar.h"
+#include "live_file.h"
 #include "target.h"
 
 namespace mini {
@@ -16,8 +17,8 @@ public:
   LivePanel& operator=(const LivePanel&) = delete;
 
   void input(const Input& input);
-  /// Shows the grammar as it is, and sets what the person changes, for the next frame.
-  void update(LiveGrammar& grammar, const GpgpSpawnReport& report, VkExtent2D extent);
+  /// Shows the file as it is, and sets what the person changes, for the next frame.
+  void update(LiveFile& file, const std::string& summary, VkExtent2D extent);
   /// Outside of render passes.
   void prepare(VkCommandBuffer commands, const GpgpFrame& frame);
   /// Inside the forward pass, last.

@@ -1,6 +1,6 @@
 // What a script does to live editing, in place of a person with an editor: a command a line.
 //
-//   set NAME VALUE     an attribute, as its slider does
+//   set NAME VALUE     an attribute, as its slider does: a number, true, false, a choice, or #rrggbb
 //   write FILE         the grammar's file gets this file's text, as an editor saves it
 //   frames N           N frames go by
 //   picture FILE       the picture as it is, as PNG; prints what it shows
@@ -14,7 +14,7 @@ namespace mini {
 struct LiveCommand {
   enum Kind { set, write, frames, picture } kind = frames;
   std::string name; ///< of the attribute or the file
-  float value = 0;
+  std::string value;
   uint32_t count = 0;
 };
 

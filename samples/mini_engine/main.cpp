@@ -28,8 +28,11 @@ constexpr const char* kHelp = R"(mini_engine: one frame with a spawned city, a v
   --score N        on the screen at the beginning, at most 9999999
   --stereo         the screen for two eyes, side by side, each half of the picture
   --watch          compile the city's grammar again whenever its file changes; errors are printed and change nothing
-  --live FILE      edit a grammar while it is shown: its variables as sliders, seen in the next frame; a saved file
-                   is seen at once, or its errors over the picture while the old city stays. The camera stands still
+  --live FILE      edit a grammar (.pga) or a .cga file while it is shown: its variables or attributes as sliders,
+                   seen in the next frame; a saved file is seen at once, or its errors over the picture while the old
+                   city stays. The camera stands still
+  --budget N       the city's rules see the camera, whose detail is chosen so that they derive at most N instances,
+                   which fade; the camera moves, with --live too: --live samples/world/wood.pga --budget 9000
   --script FILE    live: what happens, a line each: set NAME VALUE, write FILE (saves its text as the grammar),
                    frames N, picture FILE
   --decoupled      object-space shading of the model alone: what gpgp finds visible is shaded in compute, into a
@@ -53,7 +56,7 @@ Exit code 0: all is well; 1: an error, a validation message or an exceeded budge
 
 struct Options {
   std::string out, device, data = MINI_ENGINE_DATA, live, script;
-  uint32_t frames = 0;
+  uint32_t frames = 0, budget = 0;
   VkExtent2D size{1280, 720};
   bool screen = false, stereo = false;
   uint32_t score = 0;
@@ -154,6 +157,8 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
       options.live = value;
     else if (name == "--script")
       options.script = value;
+    else if (name == "--budget" && parseNumber(value, options.budget) && options.budget > 0)
+      continue;
     else if (name == "--input" && parseInputs(value, options.inputs))
       continue;
     else if (name == "--score" && parseNumber(value, options.score) && options.score <= mini::kMaxScore)
@@ -191,6 +196,8 @@ bool parse(int argc, char** argv, Options& options, std::string& wrong) {
   if (options.watch && options.decoupled.on) wrong = "--watch beside --decoupled, which shows no city";
   if (!options.live.empty() && (options.watch || options.decoupled.on || options.screen || options.stereo))
     wrong = "--live beside --watch, --decoupled or --screen";
+  if (options.budget && (options.decoupled.on || options.stereo || mini::LiveCga::takes(options.live)))
+    wrong = "--budget beside --decoupled, --stereo or a .cga file";
   if (!options.script.empty() && (options.live.empty() || options.frames))
     wrong = "--script without --live, or --frames";
   bool showsOverlay = overlay || (options.window && !options.path);
@@ -236,7 +243,7 @@ int run(const Options& options) {
     {
       mini::Engine engine(device, *target,
                           {options.data, options.watch, options.decoupled, options.screen, options.stereo,
-                           options.score, options.inputs, options.live});
+                           options.score, options.inputs, options.live, options.budget});
       if (!options.script.empty()) engine.runScript(options.script);
       if (options.path)
         engine.comparePaths(options.frames ? options.frames : 40, options.table);

@@ -12,7 +12,7 @@ LivePanel::LivePanel(Device&, Gpgp&, const Forward&, VkFormat, const std::string
 }
 LivePanel::~LivePanel() = default;
 void LivePanel::input(const Input&) {}
-void LivePanel::update(LiveGrammar&, const GpgpSpawnReport&, VkExtent2D) {}
+void LivePanel::update(LiveFile&, const std::string&, VkExtent2D) {}
 void LivePanel::prepare(VkCommandBuffer, const GpgpFrame&) {}
 void LivePanel::draw(VkCommandBuffer, const GpgpFrame&) {}
 void LivePanel::collect() {}

@@ -203,6 +203,20 @@ GpgpResult GPGP_CALL gpgpGetPasses(GpgpRecorder handle, uint32_t* count, const c
   });
 }
 
+GpgpResult GPGP_CALL gpgpGetPipelines(GpgpRecorder handle, uint32_t* count, GpgpPipelineInfo* pipelines) {
+  return guarded("gpgpGetPipelines", [&](Call& call) -> Result<void> {
+    const auto recorder = resolveAny<core::Recorder>(call, handle, Kind::spawner, Kind::atlasRecorder, "recorder");
+    if (!recorder) return recorder.error();
+    if (!count) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "count is NULL");
+    const auto list = (*recorder)->pipelines();
+    const uint32_t all = static_cast<uint32_t>(list.size()), written = pipelines ? std::min(*count, all) : 0;
+    std::copy_n(list.begin(), written, pipelines);
+    *count = all;
+    if (pipelines && written < all) return makeError(GPGP_INCOMPLETE, "pipelines is too small");
+    return {};
+  });
+}
+
 void GPGP_CALL gpgpGetRecordingAccess(GpgpAccess* buffer, GpgpAccess* image) {
   const GpgpAccess access{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                           VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT |

@@ -1,5 +1,6 @@
 // The C functions of evaluator.h, in libgpgp_evaluator, which has no context: messages go to those who made the object.
 #include "api/check_struct.h"
+#include "api/standalone.h"
 #include "spawn/evaluator/evaluation.h"
 #include "spawn/language/compile_grammar.h"
 
@@ -7,6 +8,7 @@
 #include <string>
 
 using namespace gpgp;
+using namespace gpgp::api::standalone;
 using api::checkStruct;
 using core::makeError;
 using core::Result;
@@ -39,60 +41,11 @@ struct EvaluationObject {
   spawn::Evaluation evaluation;
 };
 
-/// Who gets the message of a call.
-struct Receiver {
-  GpgpMessageFn messageFn = nullptr;
-  void* userData = nullptr;
-  const char* label = "";
-};
 Receiver receiverOf(const EvaluatorObject* evaluator) {
   if (!evaluator) return {};
   return {evaluator->messageFn, evaluator->messageUserData, evaluator->label.c_str()};
 }
 
-/// Runs body() -> Result<void>; errors become a message and a result, nothing is thrown past the ABI. An error without
-/// a text has had its messages.
-template <class Body> GpgpResult guarded(const char* function, const Receiver& to, Body&& body) noexcept {
-  const auto finish = [&](const core::Error& error) {
-    if (error.code < 0 && error.text[0] && to.messageFn) {
-      const GpgpMessage message{GPGP_SEVERITY_ERROR, error.code, function, to.label, error.text};
-      to.messageFn(to.userData, &message);
-    }
-    return error.code;
-  };
-  try {
-    const Result<void> result = body();
-    return result ? GPGP_SUCCESS : finish(result.error());
-  } catch (...) {
-    return finish(makeError(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of host memory"));
-  }
-}
-
-core::Error invalid(const char* what) { return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s", what); }
-
-template <class Object, class Handle> Object* objectOf(Handle handle) {
-  auto* object = reinterpret_cast<Object*>(handle);
-  return object && object->magic == Object::kMagic ? object : nullptr;
-}
-core::Error notA(const char* name, const char* kind) {
-  return makeError(GPGP_ERROR_INVALID_HANDLE, "%s is NULL or destroyed; expected an %s", name, kind);
-}
-
-/// Objects lie in memory of the callbacks, too.
-template <class Object, class... Args> Object* make(core::HostMemory& memory, Args&&... args) {
-  void* storage = memory.allocate(sizeof(Object), alignof(Object));
-  try {
-    return new (storage) Object(std::forward<Args>(args)...);
-  } catch (...) {
-    memory.deallocate(storage, sizeof(Object), alignof(Object));
-    throw;
-  }
-}
-template <class Object> void destroy(core::HostMemory& memory, Object* object) {
-  object->magic = 0;
-  object->~Object();
-  memory.deallocate(object, sizeof(Object), alignof(Object));
-}
 void destroyEvaluator(EvaluatorObject* object) {
   core::HostMemory memory(&object->memory.callbacks()); // which it contains
   destroy(memory, object);
@@ -111,19 +64,9 @@ Result<void> compile(const GpgpEvaluatorCreateInfo& info, EvaluatorObject& objec
   return {};
 }
 
-/// As many as there is room for, by item(i); *count becomes how many there are.
-template <class T, class Item>
-Result<void> deliver(uint32_t all, uint32_t* count, T* to, const char* what, const Item& item) {
-  if (!count) return invalid("count is NULL");
-  const uint32_t written = to ? std::min(*count, all) : 0;
-  for (uint32_t i = 0; i < written; ++i) to[i] = item(i);
-  *count = all;
-  if (to && written < all) return makeError(GPGP_INCOMPLETE, "%s is too small", what);
-  return {};
-}
-
 Result<void> check(const GpgpEvaluationInfo& info) {
   if (info.axiomCount && !info.axioms) return invalid("axioms is NULL, axiomCount is not 0");
+  if (info.contextCount > info.axiomCount) return invalid("contextCount is more than axiomCount");
   if (info.keyCount && !info.keys) return invalid("keys is NULL, keyCount is not 0");
   if (info.flags & ~(GPGP_EVALUATION_COUNT_ONLY | GPGP_EVALUATION_BOUNDS)) return invalid("flags has unknown bits");
   if (info.measures && (info.flags & GPGP_EVALUATION_COUNT_ONLY))
@@ -174,7 +117,7 @@ void GPGP_CALL gpgpDestroyEvaluator(GpgpEvaluator handle) {
 GpgpResult GPGP_CALL gpgpGetEvaluatorTerminals(GpgpEvaluator handle, uint32_t* count, GpgpGrammarTerminal* terminals) {
   const auto* object = objectOf<EvaluatorObject>(handle);
   return guarded("gpgpGetEvaluatorTerminals", receiverOf(object), [&]() -> Result<void> {
-    if (!object) return notA("evaluator", "evaluator");
+    if (!object) return notA("evaluator", "an evaluator");
     const spawn::Graph& graph = object->grammar->graph;
     return deliver(static_cast<uint32_t>(graph.terminals.size()), count, terminals, "terminals", [&](uint32_t i) {
       const spawn::Terminal& t = graph.terminals[i];
@@ -186,7 +129,7 @@ GpgpResult GPGP_CALL gpgpGetEvaluatorTerminals(GpgpEvaluator handle, uint32_t* c
 GpgpResult GPGP_CALL gpgpGetEvaluatorStarts(GpgpEvaluator handle, uint32_t* count, GpgpGrammarStart* starts) {
   const auto* object = objectOf<EvaluatorObject>(handle);
   return guarded("gpgpGetEvaluatorStarts", receiverOf(object), [&]() -> Result<void> {
-    if (!object) return notA("evaluator", "evaluator");
+    if (!object) return notA("evaluator", "an evaluator");
     const spawn::Graph& graph = object->grammar->graph;
     return deliver(spawn::startCount(graph), count, starts, "starts", [&](uint32_t i) {
       const spawn::Start start = spawn::startAt(graph, i);
@@ -195,10 +138,20 @@ GpgpResult GPGP_CALL gpgpGetEvaluatorStarts(GpgpEvaluator handle, uint32_t* coun
   });
 }
 
+GpgpResult GPGP_CALL gpgpGetEvaluatorFields(GpgpEvaluator handle, uint32_t* count, const char** names) {
+  const auto* object = objectOf<EvaluatorObject>(handle);
+  return guarded("gpgpGetEvaluatorFields", receiverOf(object), [&]() -> Result<void> {
+    if (!object) return notA("evaluator", "an evaluator");
+    const spawn::Graph& graph = object->grammar->graph;
+    return deliver(static_cast<uint32_t>(graph.fields.size()), count, names, "names",
+                   [&](uint32_t i) { return graph.nameAt(graph.fields[i]); });
+  });
+}
+
 GpgpResult GPGP_CALL gpgpFindEvaluatorStart(GpgpEvaluator handle, const char* name, uint32_t* start) {
   const auto* object = objectOf<EvaluatorObject>(handle);
   return guarded("gpgpFindEvaluatorStart", receiverOf(object), [&]() -> Result<void> {
-    if (!object) return notA("evaluator", "evaluator");
+    if (!object) return notA("evaluator", "an evaluator");
     if (!name || !start) return invalid(name ? "start is NULL" : "name is NULL");
     const spawn::Graph& graph = object->grammar->graph;
     for (uint32_t i = 0; i < spawn::startCount(graph); ++i) {
@@ -213,7 +166,7 @@ GpgpResult GPGP_CALL gpgpFindEvaluatorStart(GpgpEvaluator handle, const char* na
 GpgpResult GPGP_CALL gpgpCreateEvaluation(GpgpEvaluator handle, GpgpEvaluation* evaluation) {
   auto* object = objectOf<EvaluatorObject>(handle);
   return guarded("gpgpCreateEvaluation", receiverOf(object), [&]() -> Result<void> {
-    if (!object) return notA("evaluator", "evaluator");
+    if (!object) return notA("evaluator", "an evaluator");
     if (!evaluation) return invalid("evaluation is NULL");
     *evaluation = reinterpret_cast<GpgpEvaluation>(make<EvaluationObject>(object->memory, *object));
     return {};
@@ -227,7 +180,7 @@ void GPGP_CALL gpgpDestroyEvaluation(GpgpEvaluation handle) {
 GpgpResult GPGP_CALL gpgpEvaluate(GpgpEvaluation handle, const GpgpEvaluationInfo* info) {
   auto* object = objectOf<EvaluationObject>(handle);
   return guarded("gpgpEvaluate", receiverOf(object ? &object->evaluator : nullptr), [&]() -> Result<void> {
-    if (!object) return notA("evaluation", "evaluation");
+    if (!object) return notA("evaluation", "an evaluation");
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_EVALUATION_INFO, "info"); !ok) return ok;
     if (auto ok = check(*info); !ok) return ok;
     if (!info->vertices) return object->evaluation.derive(*info, nullptr);
@@ -240,7 +193,7 @@ GpgpResult GPGP_CALL gpgpEvaluate(GpgpEvaluation handle, const GpgpEvaluationInf
 GpgpResult GPGP_CALL gpgpGetEvaluationResult(GpgpEvaluation handle, GpgpEvaluationResult* result) {
   auto* object = objectOf<EvaluationObject>(handle);
   return guarded("gpgpGetEvaluationResult", receiverOf(object ? &object->evaluator : nullptr), [&]() -> Result<void> {
-    if (!object) return notA("evaluation", "evaluation");
+    if (!object) return notA("evaluation", "an evaluation");
     if (auto ok = checkStruct(result, GPGP_STRUCTURE_EVALUATION_RESULT, "result"); !ok) return ok;
     *result = object->evaluation.result();
     return {};

@@ -1,5 +1,6 @@
 // The C function of scatter.h: a pure function on the host.
 #include "spawn/scatter/scatter.h"
+#include "api/check_struct.h"
 
 #include <algorithm>
 #include <new>
@@ -7,7 +8,8 @@
 using namespace gpgp;
 
 GpgpResult GPGP_CALL gpgpScatterAxioms(const GpgpScatterInfo* info, uint32_t* count, GpgpAxiom* axioms) {
-  if (!info || !count || !spawn::isValid(*info)) return GPGP_ERROR_INVALID_ARGUMENT;
+  if (const auto ok = api::checkStruct(info, GPGP_STRUCTURE_SCATTER_INFO, "info"); !ok) return ok.error().code;
+  if (!count || !spawn::isValid(*info)) return GPGP_ERROR_INVALID_ARGUMENT;
   try {
     const auto all = spawn::scatter(*info);
     const size_t written = axioms ? std::min<size_t>(*count, all.size()) : 0;

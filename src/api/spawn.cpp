@@ -1,5 +1,6 @@
 // The C functions of spawn.h that belong to the run time.
 #include "api/check.h"
+#include "api/deliver.h"
 #include "spawn/schedule/checks.h"
 
 #include <gpgp/spawn.h>
@@ -32,17 +33,12 @@ GpgpResult GPGP_CALL gpgpGetGrammarTerminals(GpgpAsset handle, uint32_t* count, 
   return guarded("gpgpGetGrammarTerminals", [&](Call& call) -> Result<void> {
     const auto grammar = resolve<spawn::Grammar>(call, handle, Kind::grammar, "grammar");
     if (!grammar) return grammar.error();
-    if (!count) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "count is NULL");
     const spawn::Graph& graph = (*grammar)->graph;
-    const uint32_t all = static_cast<uint32_t>(graph.terminals.size());
-    const uint32_t written = terminals ? std::min(*count, all) : 0;
-    for (uint32_t i = 0; i < written; ++i) {
-      const spawn::Terminal& t = graph.terminals[i];
-      terminals[i] = {graph.nameAt(t.name), t.kind, t.index, t.bucket};
-    }
-    *count = all;
-    if (terminals && written < all) return makeError(GPGP_INCOMPLETE, "terminals is too small");
-    return {};
+    return deliver(static_cast<uint32_t>(graph.terminals.size()), count, terminals, "terminals",
+                   [&](uint32_t i) -> GpgpGrammarTerminal {
+                     const spawn::Terminal& t = graph.terminals[i];
+                     return {graph.nameAt(t.name), t.kind, t.index, t.bucket};
+                   });
   });
 }
 
@@ -50,17 +46,21 @@ GpgpResult GPGP_CALL gpgpGetGrammarStarts(GpgpAsset handle, uint32_t* count, Gpg
   return guarded("gpgpGetGrammarStarts", [&](Call& call) -> Result<void> {
     const auto grammar = resolve<spawn::Grammar>(call, handle, Kind::grammar, "grammar");
     if (!grammar) return grammar.error();
-    if (!count) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "count is NULL");
     const spawn::Graph& graph = (*grammar)->graph;
-    const uint32_t all = spawn::startCount(graph);
-    const uint32_t written = starts ? std::min(*count, all) : 0;
-    for (uint32_t i = 0; i < written; ++i) {
+    return deliver(spawn::startCount(graph), count, starts, "starts", [&](uint32_t i) -> GpgpGrammarStart {
       const spawn::Start start = spawn::startAt(graph, i);
-      starts[i] = {start.name, start.axiom->shape, i >= graph.rules.size()};
-    }
-    *count = all;
-    if (starts && written < all) return makeError(GPGP_INCOMPLETE, "starts is too small");
-    return {};
+      return {start.name, start.axiom->shape, i >= graph.rules.size()};
+    });
+  });
+}
+
+GpgpResult GPGP_CALL gpgpGetGrammarFields(GpgpAsset handle, uint32_t* count, const char** names) {
+  return guarded("gpgpGetGrammarFields", [&](Call& call) -> Result<void> {
+    const auto grammar = resolve<spawn::Grammar>(call, handle, Kind::grammar, "grammar");
+    if (!grammar) return grammar.error();
+    const spawn::Graph& graph = (*grammar)->graph;
+    return deliver(static_cast<uint32_t>(graph.fields.size()), count, names, "names",
+                   [&](uint32_t i) { return graph.nameAt(graph.fields[i]); });
   });
 }
 

@@ -1,5 +1,6 @@
 // The C functions of text.h, in libgpgp_text, which has no context: messages go to those who made the object.
 #include "api/check_struct.h"
+#include "api/standalone.h"
 #include "vector/geometry/check_stroke.h"
 #include "vector/text/closure.h"
 #include "vector/text/layout.h"
@@ -9,6 +10,7 @@
 
 using namespace gpgp;
 using namespace gpgp::text;
+using namespace gpgp::api::standalone;
 using api::checkStruct;
 
 namespace {
@@ -20,30 +22,9 @@ struct ShaperHandle {
   std::shared_ptr<Shaper> shaper;
 };
 
-/// Who gets the message of a call; needs no memory, which may be what is missing.
-struct Receiver {
-  GpgpMessageFn messageFn = nullptr;
-  void* userData = nullptr;
-  const char* label = "";
-  Receiver() = default;
-  Receiver(const Messages* m) {
-    if (m) messageFn = m->function, userData = m->userData, label = m->label.c_str();
-  }
-};
-
-/// Runs body() -> Result<void>; errors become a message and a result, nothing is thrown past the ABI.
-template <class Body> GpgpResult guarded(const char* function, const Receiver& to, Body&& body) noexcept {
-  const auto finish = [&](const core::Error& error) {
-    const GpgpMessage message{GPGP_SEVERITY_ERROR, error.code, function, to.label, error.text};
-    if (error.code < 0 && to.messageFn) to.messageFn(to.userData, &message);
-    return error.code;
-  };
-  try {
-    const Result<void> result = body();
-    return result ? GPGP_SUCCESS : finish(result.error());
-  } catch (...) {
-    return finish(makeError(GPGP_ERROR_OUT_OF_HOST_MEMORY, "out of host memory"));
-  }
+Receiver receiverOf(const Messages* messages) {
+  if (!messages) return {};
+  return {messages->function, messages->userData, messages->label.c_str()};
 }
 
 Font* toFont(GpgpFont handle) {
@@ -57,11 +38,6 @@ ShaperHandle* toShaper(GpgpShaper handle) {
 Layout* toLayout(GpgpLayout handle) {
   auto* layout = reinterpret_cast<Layout*>(handle);
   return layout && layout->magic == Layout::kMagic ? layout : nullptr;
-}
-
-core::Error invalid(const char* what) { return makeError(GPGP_ERROR_INVALID_ARGUMENT, "%s", what); }
-core::Error notA(const char* name, const char* kind) {
-  return makeError(GPGP_ERROR_INVALID_HANDLE, "%s is NULL or destroyed; expected a %s", name, kind);
 }
 
 /// As many as there is room for; *count becomes how many there are.
@@ -135,8 +111,8 @@ void GPGP_CALL gpgpDestroyFont(GpgpFont handle) {
 
 GpgpResult GPGP_CALL gpgpGetFontInfo(GpgpFont handle, GpgpFontInfo* info) {
   const Font* font = toFont(handle);
-  return guarded("gpgpGetFontInfo", font ? &font->messages : nullptr, [&]() -> Result<void> {
-    if (!font) return notA("font", "font");
+  return guarded("gpgpGetFontInfo", receiverOf(font ? &font->messages : nullptr), [&]() -> Result<void> {
+    if (!font) return notA("font", "a font");
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_FONT_INFO, "info"); !ok) return ok;
     *info = font->info();
     return {};
@@ -145,8 +121,8 @@ GpgpResult GPGP_CALL gpgpGetFontInfo(GpgpFont handle, GpgpFontInfo* info) {
 
 GpgpResult GPGP_CALL gpgpGetNominalGlyph(GpgpFont handle, uint32_t character, uint32_t* glyph) {
   const Font* font = toFont(handle);
-  return guarded("gpgpGetNominalGlyph", font ? &font->messages : nullptr, [&]() -> Result<void> {
-    if (!font) return notA("font", "font");
+  return guarded("gpgpGetNominalGlyph", receiverOf(font ? &font->messages : nullptr), [&]() -> Result<void> {
+    if (!font) return notA("font", "a font");
     if (!glyph) return invalid("glyph is NULL");
     hb_codepoint_t found = 0;
     *glyph = hb_font_get_nominal_glyph(font->shaping(), character, &found) ? found : 0;
@@ -157,8 +133,8 @@ GpgpResult GPGP_CALL gpgpGetNominalGlyph(GpgpFont handle, uint32_t character, ui
 GpgpResult GPGP_CALL gpgpGetGlyphOutline(GpgpFont handle, const GpgpGlyphOutlineInfo* info, GpgpGlyphFn glyphFn,
                                          void* userData) {
   Font* font = toFont(handle);
-  return guarded("gpgpGetGlyphOutline", font ? &font->messages : nullptr, [&]() -> Result<void> {
-    if (!font) return notA("font", "font");
+  return guarded("gpgpGetGlyphOutline", receiverOf(font ? &font->messages : nullptr), [&]() -> Result<void> {
+    if (!font) return notA("font", "a font");
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_GLYPH_OUTLINE_INFO, "info"); !ok) return ok;
     if (!glyphFn) return invalid("glyphFn is NULL");
     if (info->colorCount && !info->colors) return invalid("colors is NULL, but colorCount is not 0");
@@ -180,8 +156,8 @@ GpgpResult GPGP_CALL gpgpGetGlyphOutline(GpgpFont handle, const GpgpGlyphOutline
 GpgpResult GPGP_CALL gpgpGetGlyphClosure(GpgpFont handle, const GpgpCharacterRange* ranges, uint32_t rangeCount,
                                          uint32_t* count, uint32_t* glyphs) {
   const Font* font = toFont(handle);
-  return guarded("gpgpGetGlyphClosure", font ? &font->messages : nullptr, [&]() -> Result<void> {
-    if (!font) return notA("font", "font");
+  return guarded("gpgpGetGlyphClosure", receiverOf(font ? &font->messages : nullptr), [&]() -> Result<void> {
+    if (!font) return notA("font", "a font");
     if (!count) return invalid("count is NULL");
     if (rangeCount && !ranges) return invalid("ranges is NULL, but rangeCount is not 0");
     for (uint32_t i = 0; i < rangeCount; ++i)
@@ -222,18 +198,19 @@ void GPGP_CALL gpgpDestroyShaper(GpgpShaper handle) {
 
 GpgpResult GPGP_CALL gpgpGetShaperReport(GpgpShaper handle, GpgpShaperReport* report) {
   const ShaperHandle* shaper = toShaper(handle);
-  return guarded("gpgpGetShaperReport", shaper ? &shaper->shaper->messages : nullptr, [&]() -> Result<void> {
-    if (!shaper) return notA("shaper", "shaper");
-    if (auto ok = checkStruct(report, GPGP_STRUCTURE_SHAPER_REPORT, "report"); !ok) return ok;
-    shaper->shaper->report(*report);
-    return {};
-  });
+  return guarded("gpgpGetShaperReport", receiverOf(shaper ? &shaper->shaper->messages : nullptr),
+                 [&]() -> Result<void> {
+                   if (!shaper) return notA("shaper", "a shaper");
+                   if (auto ok = checkStruct(report, GPGP_STRUCTURE_SHAPER_REPORT, "report"); !ok) return ok;
+                   shaper->shaper->report(*report);
+                   return {};
+                 });
 }
 
 GpgpResult GPGP_CALL gpgpCreateLayout(GpgpShaper handle, GpgpLayout* layout) {
   const ShaperHandle* shaper = toShaper(handle);
-  return guarded("gpgpCreateLayout", shaper ? &shaper->shaper->messages : nullptr, [&]() -> Result<void> {
-    if (!shaper) return notA("shaper", "shaper");
+  return guarded("gpgpCreateLayout", receiverOf(shaper ? &shaper->shaper->messages : nullptr), [&]() -> Result<void> {
+    if (!shaper) return notA("shaper", "a shaper");
     if (!layout) return invalid("layout is NULL");
     *layout = reinterpret_cast<GpgpLayout>(new Layout(shaper->shaper, shaper->shaper->messages));
     return {};
@@ -249,8 +226,8 @@ void GPGP_CALL gpgpDestroyLayout(GpgpLayout handle) {
 
 GpgpResult GPGP_CALL gpgpSetLayoutText(GpgpLayout handle, const GpgpTextInfo* info) {
   Layout* layout = toLayout(handle);
-  return guarded("gpgpSetLayoutText", layout ? &layout->messages : nullptr, [&]() -> Result<void> {
-    if (!layout) return notA("layout", "layout");
+  return guarded("gpgpSetLayoutText", receiverOf(layout ? &layout->messages : nullptr), [&]() -> Result<void> {
+    if (!layout) return notA("layout", "a layout");
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_TEXT_INFO, "info"); !ok) return ok;
     if (info->size && !info->text) return invalid("text is NULL, but size is not 0");
     if (info->size >= size_t(1) << 31)
@@ -288,8 +265,8 @@ GpgpResult GPGP_CALL gpgpSetLayoutText(GpgpLayout handle, const GpgpTextInfo* in
 
 GpgpResult GPGP_CALL gpgpGetLayoutInfo(GpgpLayout handle, GpgpLayoutInfo* info) {
   const Layout* layout = toLayout(handle);
-  return guarded("gpgpGetLayoutInfo", layout ? &layout->messages : nullptr, [&]() -> Result<void> {
-    if (!layout) return notA("layout", "layout");
+  return guarded("gpgpGetLayoutInfo", receiverOf(layout ? &layout->messages : nullptr), [&]() -> Result<void> {
+    if (!layout) return notA("layout", "a layout");
     if (auto ok = checkStruct(info, GPGP_STRUCTURE_LAYOUT_INFO, "info"); !ok) return ok;
     layout->info(*info);
     return {};
@@ -299,8 +276,8 @@ GpgpResult GPGP_CALL gpgpGetLayoutInfo(GpgpLayout handle, GpgpLayoutInfo* info) 
 GpgpResult GPGP_CALL gpgpGetSelection(GpgpLayout handle, uint32_t begin, uint32_t end, uint32_t* count,
                                       GpgpTextRect* rects) {
   const Layout* layout = toLayout(handle);
-  return guarded("gpgpGetSelection", layout ? &layout->messages : nullptr, [&]() -> Result<void> {
-    if (!layout) return notA("layout", "layout");
+  return guarded("gpgpGetSelection", receiverOf(layout ? &layout->messages : nullptr), [&]() -> Result<void> {
+    if (!layout) return notA("layout", "a layout");
     if (!count) return invalid("count is NULL");
     std::vector<GpgpTextRect> found;
     layout->selection(begin, end, found);
@@ -310,8 +287,8 @@ GpgpResult GPGP_CALL gpgpGetSelection(GpgpLayout handle, uint32_t begin, uint32_
 
 GpgpResult GPGP_CALL gpgpGetCaret(GpgpLayout handle, uint32_t offset, VkBool32 trailing, GpgpCaret* caret) {
   const Layout* layout = toLayout(handle);
-  return guarded("gpgpGetCaret", layout ? &layout->messages : nullptr, [&]() -> Result<void> {
-    if (!layout) return notA("layout", "layout");
+  return guarded("gpgpGetCaret", receiverOf(layout ? &layout->messages : nullptr), [&]() -> Result<void> {
+    if (!layout) return notA("layout", "a layout");
     if (!caret) return invalid("caret is NULL");
     *caret = layout->caret(offset, trailing != 0);
     return {};
@@ -320,8 +297,8 @@ GpgpResult GPGP_CALL gpgpGetCaret(GpgpLayout handle, uint32_t offset, VkBool32 t
 
 GpgpResult GPGP_CALL gpgpHitTestLayout(GpgpLayout handle, float x, float y, GpgpTextHit* hit) {
   const Layout* layout = toLayout(handle);
-  return guarded("gpgpHitTestLayout", layout ? &layout->messages : nullptr, [&]() -> Result<void> {
-    if (!layout) return notA("layout", "layout");
+  return guarded("gpgpHitTestLayout", receiverOf(layout ? &layout->messages : nullptr), [&]() -> Result<void> {
+    if (!layout) return notA("layout", "a layout");
     if (!hit) return invalid("hit is NULL");
     if (!std::isfinite(x) || !std::isfinite(y)) return invalid("x or y is not finite");
     *hit = layout->hit(x, y);
@@ -332,8 +309,8 @@ GpgpResult GPGP_CALL gpgpHitTestLayout(GpgpLayout handle, float x, float y, Gpgp
 GpgpResult GPGP_CALL gpgpMoveCaret(GpgpLayout handle, uint32_t offset, GpgpCaretMove move, uint32_t* moved,
                                    VkBool32* trailing) {
   Layout* layout = toLayout(handle);
-  return guarded("gpgpMoveCaret", layout ? &layout->messages : nullptr, [&]() -> Result<void> {
-    if (!layout) return notA("layout", "layout");
+  return guarded("gpgpMoveCaret", receiverOf(layout ? &layout->messages : nullptr), [&]() -> Result<void> {
+    if (!layout) return notA("layout", "a layout");
     if (!moved) return invalid("moved is NULL");
     const auto at = layout->move(offset, trailing && *trailing, move);
     if (!at) return at.error();

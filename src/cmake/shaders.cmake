@@ -24,7 +24,7 @@ if(GPGP_PACK)
   string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
   set(line "0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,")
   string(REGEX REPLACE "(${line}${line}${line})" "\\1\n" bytes "${bytes}")
-  file(WRITE ${GPGP_PACK}.cpp "#include \"core/shader_code.h\"
+  file(WRITE ${GPGP_PACK}.cpp "#include \"core/shader_pack.h\"
 namespace gpgp::core::packs {
 constexpr unsigned char bytes[] = {
 ${bytes}};

@@ -164,6 +164,14 @@ void Context::message(GpgpSeverity severity, GpgpResult code, const char* functi
 Slot* Context::adopt(Unique<Object> object) {
   const std::lock_guard lock(objects);
   if (living_.size() == living_.capacity()) living_.reserve(std::max<size_t>(64, 2 * living_.size()));
+  if (!freeSlots_ && wornSlots_ > kWornSlots) { // the one that has waited longest begins anew
+    Slot* const slot = firstWorn_;
+    firstWorn_ = slot->nextFree;
+    --wornSlots_;
+    slot->generation = 0;
+    slot->nextFree = nullptr;
+    freeSlots_ = slot;
+  }
   if (!freeSlots_) {
     slotBlocks_.reserve(slotBlocks_.size() + 1);
     Slot* block = static_cast<Slot*>(host_.allocate(sizeof(Slot) * 64, alignof(Slot)));
@@ -194,13 +202,17 @@ void Context::retire(Object& object) {
     if (++slot.generation < alignof(Slot)) {
       slot.nextFree = freeSlots_;
       freeSlots_ = &slot;
+    } else {
+      slot.nextFree = nullptr;
+      (wornSlots_++ ? lastWorn_->nextFree : firstWorn_) = &slot;
+      lastWorn_ = &slot;
     }
     living_[object.livingIndex] = living_.back();
     living_[object.livingIndex]->livingIndex = object.livingIndex;
     living_.pop_back();
   }
   object.retire();
-  object.destroyedInFrame = frame_.current;
+  object.destroyedInFrame = current();
   object.next = retired_;
   retired_ = &object;
   if (lost()) freeRetired(UINT64_MAX);
@@ -227,14 +239,15 @@ Result<void> Context::advance(const GpgpFrame& frame) {
   if (frame.safe >= frame.current)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "frame.safe (%llu) must be below frame.current (%llu)",
                      static_cast<unsigned long long>(frame.safe), static_cast<unsigned long long>(frame.current));
-  if (frame.current < frame_.current || frame.safe < frame_.safe)
+  if (frame.current < current() || frame.safe < safe())
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "frame numbers only grow: the last was {%llu, %llu}",
-                     static_cast<unsigned long long>(frame_.current), static_cast<unsigned long long>(frame_.safe));
+                     static_cast<unsigned long long>(current()), static_cast<unsigned long long>(safe()));
   if (frame.current - frame.safe > maxFramesInFlight)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
                      "frame.current - frame.safe is %llu, but the context was made for %u frames in flight",
                      static_cast<unsigned long long>(frame.current - frame.safe), maxFramesInFlight);
-  frame_ = frame;
+  current_.store(frame.current, std::memory_order_relaxed);
+  safe_.store(frame.safe, std::memory_order_relaxed);
   begun_ = true;
   uploads_->advance();
   for (Recorder* recorder = recorders; recorder; recorder = recorder->nextRecorder()) recorder->advance();
@@ -254,11 +267,11 @@ bool Context::isNew(std::initializer_list<const char*> texts) const {
 Result<void> Context::checkFrame(const GpgpFrame* frame) const {
   if (!frame) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "frame is NULL");
   if (!begun_) return makeError(GPGP_ERROR_INVALID_ARGUMENT, "no frame has begun; call gpgpAdvance first");
-  if (frame->current != frame_.current || frame->safe != frame_.safe)
+  if (frame->current != current() || frame->safe != safe())
     return makeError(GPGP_ERROR_INVALID_ARGUMENT,
                      "frame {%llu, %llu} is not the one of the last gpgpAdvance, {%llu, %llu}",
                      static_cast<unsigned long long>(frame->current), static_cast<unsigned long long>(frame->safe),
-                     static_cast<unsigned long long>(frame_.current), static_cast<unsigned long long>(frame_.safe));
+                     static_cast<unsigned long long>(current()), static_cast<unsigned long long>(safe()));
   return {};
 }
 

@@ -57,8 +57,9 @@ public:
   void retire(Object& object);
 
   // ---- frames (context; current and safe are read by recording threads)
-  uint64_t current() const { return frame_.current; }
-  uint64_t safe() const { return frame_.safe; }
+  /// The frame of the last advance; threads that create assets read it beside an advance.
+  uint64_t current() const { return current_.load(std::memory_order_relaxed); }
+  uint64_t safe() const { return safe_.load(std::memory_order_relaxed); }
   bool lost() const { return lost_.load(std::memory_order_relaxed); }
   /// DEVICE_LOST once the engine has said so.
   Result<void> checkAlive() const {
@@ -90,11 +91,13 @@ private:
   Unique<GpuMemory> gpu_;
   Unique<AssetPool> assetPool_;
   Unique<UploadRing> uploads_;
-  std::pmr::vector<void*> slotBlocks_; // objects, as the next two
+  std::pmr::vector<void*> slotBlocks_; // objects, as the next ones
   Slot* freeSlots_ = nullptr;
+  Slot *firstWorn_ = nullptr, *lastWorn_ = nullptr; ///< slots without generations left, in the order of their ends
+  uint32_t wornSlots_ = 0;
   std::pmr::vector<Object*> living_;
   Object* retired_ = nullptr; // context
-  GpgpFrame frame_{1, 0};
+  std::atomic<uint64_t> current_{1}, safe_{0};
   bool begun_ = false;                                      ///< advance() was called
   mutable std::array<std::atomic<uint64_t>, 64> said_ = {}; ///< hashes, see isNew
   std::atomic<bool> lost_{false};

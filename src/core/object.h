@@ -1,6 +1,7 @@
 // Objects behind handles. A handle is the address of a slot with a generation in its low bits. Slots are never given
-// back while the context lives, and a slot whose generations are used up is not used again, so a destroyed handle is
-// always recognised and never followed.
+// back while the context lives, so a destroyed handle is never followed. A slot whose generations are used up begins
+// anew behind kWornSlots others: a destroyed handle is recognised until at least as many more objects were destroyed,
+// mostly until 64 times as many were.
 #pragma once
 #include "core/host_memory.h"
 #include "core/result.h"
@@ -29,6 +30,8 @@ enum class Kind : uint32_t {
   list
 };
 const char* kindName(Kind kind);
+
+constexpr uint32_t kWornSlots = 1024; ///< that wait before they begin anew: 64 KiB of a context
 
 class Object;
 struct alignas(64) Slot {

@@ -56,6 +56,10 @@ struct ShaderDesc {
   ShaderCode spirv;
   std::array<uint32_t, kMaxSpecialization> specialization = {}; ///< by constant_id
   uint32_t specializationCount = 0;
+  /// The resources that it binds, a bit each, where pipelines stand in for it that other recorders made: the same in
+  /// all of them. 0: those that its code uses.
+  uint64_t bindings = 0;
+  bool replaced = false; ///< in every recording (Record::replacement): no pipeline is made of it
 };
 
 enum class PassKind : uint8_t { dispatch, dispatchIndirect, fill };

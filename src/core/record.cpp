@@ -189,7 +189,8 @@ void Recorder::take(uint32_t slot, uint64_t tag, bool report, uint32_t readBackB
   if (++nextMarker_ == 0) nextMarker_ = 1;
 }
 
-void Recorder::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
+void Recorder::writeDescriptors(uint32_t slot, uint32_t first, uint32_t groupCount,
+                                const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
                                 VkDeviceSize scratchOffset, bool reports) const {
   std::array<VkWriteDescriptorSet, kMaxResources> writes;
   std::array<VkDescriptorBufferInfo, kMaxResources> buffers;
@@ -198,8 +199,8 @@ void Recorder::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxRes
   for (uint32_t i = 0; i < passes_.resources.size(); ++i) {
     const Resource& resource = passes_.resources[i];
     const Binding& binding = bindings[i];
-    VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, sets_[slot], i,      0, 1,
-                               descriptorType(resource.kind),          nullptr, &buffers[i], nullptr};
+    VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, VK_NULL_HANDLE, i,      0, 1,
+                               descriptorType(resource.kind),          nullptr, &buffers[i],    nullptr};
     // What a recording leaves out is bound to a harmless range: passes that would use it are skipped or check a flag.
     buffers[i] = {constants_.handle(), resource.written ? unusedOffset_ : 0,
                   resource.written ? kUnusedBytes : std::clamp<VkDeviceSize>(passes_.constantsBytes, 16, kUnusedBytes)};
@@ -236,7 +237,18 @@ void Recorder::writeDescriptors(uint32_t slot, const std::array<Binding, kMaxRes
     }
     writes[count++] = write;
   }
-  context.device.vk.UpdateDescriptorSets(context.device.device, count, writes.data(), 0, nullptr);
+  for (uint32_t group = first; group < first + groupCount; ++group) {
+    std::array<VkWriteDescriptorSet, kMaxResources> ofGroup;
+    uint32_t written = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+      const bool isTexture = writes[i].dstSet != VK_NULL_HANDLE;
+      if (isTexture ? group != first : !(groups_[group].resources >> writes[i].dstBinding & 1)) continue;
+      ofGroup[written] = writes[i];
+      if (!isTexture) ofGroup[written].dstSet = setOf(slot, group);
+      ++written;
+    }
+    context.device.vk.UpdateDescriptorSets(context.device.device, written, ofGroup.data(), 0, nullptr);
+  }
 }
 
 void Recorder::beginLabel(VkCommandBuffer commandBuffer, const char* pass) const {
@@ -373,7 +385,7 @@ Result<void> Recorder::record(const Record& record) {
     if (const auto data = record.bindings[i].hostData; !data.empty())
       std::memcpy(constants_.mapped() + slot * passes_.constantsBytes + passes_.scratchOffsets[i], data.data(),
                   data.size());
-  writeDescriptors(slot, record.bindings, scratch, scratchOffset, record.reports);
+  writeDescriptors(slot, 0, computeGroups_, record.bindings, scratch, scratchOffset, record.reports);
   const VkDescriptorSet* const textureSets =
       textureSets_.empty() ? nullptr : &textureSets_[slot * passes_.texturePages];
   const uint32_t pages = static_cast<uint32_t>(record.pageConstants.size());
@@ -412,16 +424,25 @@ Result<void> Recorder::record(const Record& record) {
   uint32_t query = timestamps.firstQuery;
   if (timestamps.queryPool)
     vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps.queryPool, query++);
-  vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0, 1, &sets_[slot], 0, nullptr);
+  uint32_t boundGroup = UINT32_MAX;
+  VkPipelineLayout layout = VK_NULL_HANDLE; // of the group that is bound
+  const bool hasTextures = textureSets && (pages || record.bindings[firstTexture_].texture.imageView);
   const auto bindPage = [&](uint32_t page) {
-    vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 1, 1, &textureSets[page], 0, nullptr);
+    vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 1, 1, &textureSets[page], 0, nullptr);
   };
-  if (textureSets && (pages || record.bindings[firstTexture_].texture.imageView)) bindPage(0);
+  const auto bindGroup = [&](uint32_t group) {
+    if (boundGroup == group) return;
+    boundGroup = group;
+    layout = groups_[group].layout;
+    const VkDescriptorSet set = setOf(slot, group);
+    vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set, 0, nullptr);
+    if (hasTextures) bindPage(0);
+  };
+  bindGroup(0);
   VkPipeline bound = VK_NULL_HANDLE;
-  const VkShaderStageFlags stages =
-      VkShaderStageFlags(VK_SHADER_STAGE_COMPUTE_BIT) |
-      (draws_ ? VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT : VkShaderStageFlags(0));
+  const VkShaderStageFlags stages = shaderStages();
   const auto bind = [&](uint32_t shader) {
+    bindGroup(groupOf_[shader]);
     const VkPipeline pipeline = shader == record.replacedShader ? record.replacement : pipelines_[shader];
     if (bound == pipeline) return;
     bound = pipeline;
@@ -446,7 +467,7 @@ Result<void> Recorder::record(const Record& record) {
         ran_[step.pass] = true;
         beginLabel(cmd, stepped.name);
         bind(stepped.shader);
-        vk.CmdPushConstants(cmd, layout_, stages, 0, sizeof step.constant, &step.constant);
+        vk.CmdPushConstants(cmd, layout, stages, 0, sizeof step.constant, &step.constant);
         vk.CmdDispatch(cmd, step.groups[0], step.groups[1], step.groups[2]);
         endLabel(cmd);
       }
@@ -468,7 +489,7 @@ Result<void> Recorder::record(const Record& record) {
       } else {
         bind(pass.shader);
         if (pass.constantCount)
-          vk.CmdPushConstants(cmd, layout_, stages, 0, pass.constantCount * 4, pass.constants.data());
+          vk.CmdPushConstants(cmd, layout, stages, 0, pass.constantCount * 4, pass.constants.data());
         if (pass.kind == PassKind::dispatchIndirect) {
           const auto [buffer, offset] = place(pass.target);
           vk.CmdDispatchIndirect(cmd, buffer, offset + pass.offset);
@@ -480,7 +501,7 @@ Result<void> Recorder::record(const Record& record) {
             const uint32_t dispatches = 1u << static_cast<uint32_t>(pass.kind);
             if (page) passBarrier(vk, cmd, dispatches, dispatches);
             bindPage(page);
-            vk.CmdPushConstants(cmd, layout_, stages, 0, sizeof constants, constants);
+            vk.CmdPushConstants(cmd, layout, stages, 0, sizeof constants, constants);
             vk.CmdDispatch(cmd, groups[0], groups[1], groups[2]);
           }
           if (pass.paged)
@@ -540,14 +561,15 @@ Result<void> Recorder::recordDraw(const DrawRecord& record) {
   take(slot, 0, false);
 
   const DeviceTable& vk = context.device.vk;
-  writeDescriptors(slot, record.bindings, scratch_.handle(), 0, false);
+  const uint32_t group = groupOfDraw_[record.form];
+  const VkDescriptorSet set = setOf(slot, group);
+  writeDescriptors(slot, group, 1, record.bindings, scratch_.handle(), 0, false);
   beginLabel(record.commandBuffer, "draw");
   vk.CmdBindPipeline(record.commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
-  vk.CmdBindDescriptorSets(record.commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &sets_[slot], 0,
+  vk.CmdBindDescriptorSets(record.commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, groups_[group].layout, 0, 1, &set, 0,
                            nullptr);
   if (!record.pushConstants.empty())
-    vk.CmdPushConstants(record.commandBuffer, layout_,
-                        VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+    vk.CmdPushConstants(record.commandBuffer, groups_[group].layout, shaderStages(), 0,
                         static_cast<uint32_t>(record.pushConstants.size()), record.pushConstants.data());
   vk.CmdDraw(record.commandBuffer, record.vertexCount, record.instanceCount, 0, 0);
   endLabel(record.commandBuffer);

@@ -1,23 +1,16 @@
 #include "core/recorder.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 
 namespace gpgp::core {
-namespace {
-constexpr VkDeviceSize kPushConstantBytes = 128;
-
-VkShaderStageFlags shaderStages(bool draws) {
-  return VkShaderStageFlags(VK_SHADER_STAGE_COMPUTE_BIT) |
-         (draws ? VkShaderStageFlags(VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT) : 0);
-}
-
-} // namespace
 
 Recorder::Recorder(Context& ctx, Kind recorderKind, const GpgpRecorderCreateInfo& info, GpgpService service)
     : Object(ctx, recorderKind, info.label), service_(service), queueFamily_(info.queueFamily),
       queueFlags_(info.queueFlags), engineScratch_(info.engineScratch != VK_FALSE), passes_(&ctx.host()),
-      sets_(&ctx.host()), textureSets_(&ctx.host()), pipelines_(&ctx.host()), slots_(&ctx.host()), ran_(&ctx.host()),
+      groups_(&ctx.host()), groupOf_(&ctx.host()), sets_(&ctx.host()), textureSets_(&ctx.host()),
+      pipelines_(&ctx.host()), pipelineTimes_(&ctx.host()), slots_(&ctx.host()), ran_(&ctx.host()),
       harvested_(&ctx.host()), readBacks_(&ctx.host()), queue_(&ctx.host()) {}
 
 void Recorder::unlink() {
@@ -34,8 +27,10 @@ Recorder::~Recorder() {
   for (uint32_t i = 0; i < targetCount_; ++i)
     for (VkPipeline pipeline : targets_[i].pipelines) device.vk.DestroyPipeline(device.device, pipeline, nullptr);
   device.vk.DestroyDescriptorPool(device.device, pool_, nullptr);
-  device.vk.DestroyPipelineLayout(device.device, layout_, nullptr);
-  device.vk.DestroyDescriptorSetLayout(device.device, setLayout_, nullptr);
+  for (const BindingGroup& group : groups_) {
+    device.vk.DestroyPipelineLayout(device.device, group.layout, nullptr);
+    device.vk.DestroyDescriptorSetLayout(device.device, group.setLayout, nullptr);
+  }
   device.vk.DestroyDescriptorSetLayout(device.device, textureLayout_, nullptr);
 }
 
@@ -74,78 +69,10 @@ Result<void> Recorder::init(PassList passes, std::span<const DrawShaders> draws)
           GPGP_ERROR_UNSUPPORTED, "the budgets need %llu bytes for \"%s\", but this device binds at most %u",
           static_cast<unsigned long long>(resource.bytes), resource.name, device.limits.maxStorageBufferRange);
 
-  const uint32_t resourceCount = static_cast<uint32_t>(passes_.resources.size());
-  std::array<VkDescriptorSetLayoutBinding, kMaxResources> bindings{}, textureBindings{};
-  uint32_t images = 0, textures = 0, uniforms = 0;
-  for (uint32_t i = 0; i < resourceCount; ++i) {
-    const VkShaderStageFlags stages = shaderStages(draws_);
-    const ResourceKind ofResource = passes_.resources[i].kind;
-    if (ofResource == ResourceKind::texture) {
-      if (textures == 0) firstTexture_ = i;
-      textureBindings[textures++] = {i - firstTexture_, descriptorType(ofResource), 1, stages, nullptr};
-      continue;
-    }
-    bindings[i - textures] = {i, descriptorType(ofResource), 1, stages, nullptr};
-    images += ofResource == ResourceKind::image;
-    uniforms += ofResource == ResourceKind::uniforms;
-  }
-  const uint32_t buffers = resourceCount - images - textures - uniforms;
-  if (buffers > device.limits.maxPerStageDescriptorStorageBuffers) // more than is asked of every device
-    return makeError(GPGP_ERROR_UNSUPPORTED,
-                     "this recorder takes %u storage buffers a stage, but the device has %u "
-                     "(maxPerStageDescriptorStorageBuffers)",
-                     buffers, device.limits.maxPerStageDescriptorStorageBuffers);
-  VkDescriptorSetLayoutCreateInfo setInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-  setInfo.bindingCount = resourceCount - textures;
-  setInfo.pBindings = bindings.data();
-  VkResult result = device.vk.CreateDescriptorSetLayout(device.device, &setInfo, nullptr, &setLayout_);
-  if (result != VK_SUCCESS) return vulkanError(result, "vkCreateDescriptorSetLayout");
-  if (textures) {
-    setInfo.bindingCount = textures;
-    setInfo.pBindings = textureBindings.data();
-    result = device.vk.CreateDescriptorSetLayout(device.device, &setInfo, nullptr, &textureLayout_);
-    if (result != VK_SUCCESS) return vulkanError(result, "vkCreateDescriptorSetLayout");
-  }
-  const VkDescriptorSetLayout setLayouts[2] = {setLayout_, textureLayout_};
-  const VkPushConstantRange range{shaderStages(draws_), 0, kPushConstantBytes};
-  VkPipelineLayoutCreateInfo layoutInfo{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
-  layoutInfo.setLayoutCount = textures ? 2 : 1;
-  layoutInfo.pSetLayouts = setLayouts;
-  layoutInfo.pushConstantRangeCount = 1;
-  layoutInfo.pPushConstantRanges = &range;
-  result = device.vk.CreatePipelineLayout(device.device, &layoutInfo, nullptr, &layout_);
-  if (result != VK_SUCCESS) return vulkanError(result, "vkCreatePipelineLayout");
-
   const uint32_t slotCount = context.maxFramesInFlight * context.maxRecordingsPerFrame;
-  std::array<VkDescriptorPoolSize, 4> sizes{{{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, std::max(1u, buffers * slotCount)}}};
-  uint32_t sizeCount = 1;
-  if (uniforms) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, uniforms * slotCount};
-  if (images) sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, images * slotCount};
-  if (textures)
-    sizes[sizeCount++] = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures * slotCount * passes_.texturePages};
-  VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
-  poolInfo.maxSets = textures ? (1 + passes_.texturePages) * slotCount : slotCount;
-  poolInfo.poolSizeCount = sizeCount;
-  poolInfo.pPoolSizes = sizes.data();
-  result = device.vk.CreateDescriptorPool(device.device, &poolInfo, nullptr, &pool_);
-  if (result != VK_SUCCESS) return vulkanError(result, "vkCreateDescriptorPool");
-  std::pmr::vector<VkDescriptorSetLayout> layouts(slotCount, setLayout_, &context.host());
-  sets_.resize(slotCount);
-  VkDescriptorSetAllocateInfo allocateInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
-  allocateInfo.descriptorPool = pool_;
-  allocateInfo.descriptorSetCount = slotCount;
-  allocateInfo.pSetLayouts = layouts.data();
-  result = device.vk.AllocateDescriptorSets(device.device, &allocateInfo, sets_.data());
-  if (result != VK_SUCCESS) return vulkanError(result, "vkAllocateDescriptorSets");
-  if (textures) {
-    textureCount_ = textures;
-    layouts.assign(slotCount * passes_.texturePages, textureLayout_);
-    textureSets_.resize(layouts.size());
-    allocateInfo.descriptorSetCount = static_cast<uint32_t>(layouts.size());
-    allocateInfo.pSetLayouts = layouts.data();
-    result = device.vk.AllocateDescriptorSets(device.device, &allocateInfo, textureSets_.data());
-    if (result != VK_SUCCESS) return vulkanError(result, "vkAllocateDescriptorSets");
-  }
+  if (auto ok = groupBindings(draws_ ? drawForms_ : 0); !ok) return ok;
+  if (auto ok = createLayouts(); !ok) return ok;
+  if (auto ok = createSets(slotCount); !ok) return ok;
 
   if (!engineScratch_ && passes_.scratchBytes) {
     auto scratch = Buffer::create(device, context.gpu(), service_, "scratch", passes_.scratchBytes, kScratchUsage,
@@ -172,6 +99,7 @@ Result<void> Recorder::init(PassList passes, std::span<const DrawShaders> draws)
   harvested_.resize(size_t(slotCount) * (passes_.reportBytes / 4));
   readBacks_.resize(size_t(slotCount) * (passes_.readBackBytes / 8));
   pipelines_.resize(passes_.shaders.size(), VK_NULL_HANDLE);
+  pipelineTimes_.resize(passes_.shaders.size());
   ran_.resize(passes_.passes.size());
 
   nextRecorder_ = context.recorders;
@@ -182,6 +110,18 @@ Result<void> Recorder::init(PassList passes, std::span<const DrawShaders> draws)
 }
 
 // ---------------------------------------------------------------- pipelines
+
+namespace {
+class Stopwatch {
+public:
+  float milliseconds() const {
+    return std::chrono::duration<float, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+} // namespace
 
 Result<VkShaderModule> Recorder::createModule(const ShaderDesc& shader) const {
   const auto code = ShaderWords::of(shader.spirv, &context.host());
@@ -195,7 +135,7 @@ Result<VkShaderModule> Recorder::createModule(const ShaderDesc& shader) const {
   return module;
 }
 
-Result<VkPipeline> Recorder::createComputePipeline(const ShaderDesc& shader) const {
+Result<VkPipeline> Recorder::createComputePipeline(const ShaderDesc& shader, uint32_t place) const {
   const Device& device = context.device;
   const auto module = createModule(shader);
   if (!module) return module.error();
@@ -207,7 +147,7 @@ Result<VkPipeline> Recorder::createComputePipeline(const ShaderDesc& shader) con
   info.stage = {
       VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,   nullptr, 0, VK_SHADER_STAGE_COMPUTE_BIT, *module, "main",
       shader.specializationCount ? &specialization : nullptr};
-  info.layout = layout_;
+  info.layout = groups_[groupOf_[place]].layout;
   VkPipeline pipeline = VK_NULL_HANDLE;
   const VkResult result =
       device.vk.CreateComputePipelines(device.device, context.pipelineCache, 1, &info, nullptr, &pipeline);
@@ -217,8 +157,9 @@ Result<VkPipeline> Recorder::createComputePipeline(const ShaderDesc& shader) con
   return pipeline;
 }
 
-Result<VkPipeline> Recorder::createDrawPipeline(const DrawShaders& draw, const GpgpTargetInfo& target) const {
+Result<VkPipeline> Recorder::createDrawPipeline(uint32_t form, const GpgpTargetInfo& target) const {
   const Device& device = context.device;
+  const DrawShaders& draw = draw_[form];
   const auto vertex = createModule(target.viewMask ? draw.multiviewVertex : draw.vertex);
   if (!vertex) return vertex.error();
   const auto fragment = createModule(target.viewMask ? draw.multiviewFragment : draw.fragment);
@@ -276,7 +217,7 @@ Result<VkPipeline> Recorder::createDrawPipeline(const DrawShaders& draw, const G
   info.pDepthStencilState = &depth;
   info.pColorBlendState = &blendState;
   info.pDynamicState = &dynamic;
-  info.layout = layout_;
+  info.layout = groups_[groupOfDraw_[form]].layout;
   info.renderPass = target.renderPass;
   info.subpass = target.subpass;
   VkPipeline pipeline = VK_NULL_HANDLE;
@@ -287,6 +228,23 @@ Result<VkPipeline> Recorder::createDrawPipeline(const DrawShaders& draw, const G
   if (result != VK_SUCCESS) return vulkanError(result, "vkCreateGraphicsPipelines");
   device.setName(VK_OBJECT_TYPE_PIPELINE, pipeline, label.text, "draw");
   return pipeline;
+}
+
+std::pmr::vector<GpgpPipelineInfo> Recorder::pipelines() const {
+  std::pmr::vector<GpgpPipelineInfo> all(&context.host());
+  for (size_t i = 0; i < passes_.shaders.size(); ++i) {
+    const ShaderDesc& shader = passes_.shaders[i];
+    if (!shader.replaced) all.push_back({shader.name, shader.spirv.count * 4, pipelineTimes_[i]});
+  }
+  for (uint32_t i = 0; i < targetCount_.load(std::memory_order_acquire); ++i)
+    for (uint32_t form = 0; form < drawForms_; ++form) {
+      const DrawShaders& draw = draw_[form];
+      const bool multiview = targets_[i].info.viewMask != 0;
+      const uint32_t words = multiview ? draw.multiviewVertex.spirv.count + draw.multiviewFragment.spirv.count
+                                       : draw.vertex.spirv.count + draw.fragment.spirv.count;
+      all.push_back({"draw", words * 4, targets_[i].times[form]});
+    }
+  return all;
 }
 
 Result<void> Recorder::prewarm(const GpgpPrewarmInfo* info) {
@@ -329,13 +287,16 @@ Result<void> Recorder::prewarm(const GpgpPrewarmInfo* info) {
   struct Job {
     const Recorder* recorder;
     VkPipeline* pipelines;
+    float* times;
     std::pmr::vector<Error> errors;
-  } job{this, pipelines_.data(), std::pmr::vector<Error>(pipelines_.size(), &context.host())};
+  } job{this, pipelines_.data(), pipelineTimes_.data(), std::pmr::vector<Error>(pipelines_.size(), &context.host())};
   const GpgpJobFn compile = [](void* argument, uint32_t index) GPGP_CALL {
     Job& j = *static_cast<Job*>(argument);
-    if (j.pipelines[index]) return;
+    if (j.pipelines[index] || j.recorder->passes_.shaders[index].replaced) return;
     try {
-      const auto pipeline = j.recorder->createComputePipeline(j.recorder->passes_.shaders[index]);
+      const Stopwatch watch;
+      const auto pipeline = j.recorder->createComputePipeline(j.recorder->passes_.shaders[index], index);
+      j.times[index] = watch.milliseconds();
       if (pipeline)
         j.pipelines[index] = *pipeline;
       else
@@ -360,9 +321,11 @@ Result<void> Recorder::prewarm(const GpgpPrewarmInfo* info) {
     if (have == kMaxTargets)
       return makeError(GPGP_ERROR_UNSUPPORTED, "a recorder draws into at most %u different targets", kMaxTargets);
     Target& target = targets_[have];
-    target = {info->targets[i], {}};
+    target = {info->targets[i], {}, {}};
     for (uint32_t form = 0; form < drawForms_; ++form) {
-      const auto pipeline = createDrawPipeline(draw_[form], target.info);
+      const Stopwatch watch;
+      const auto pipeline = createDrawPipeline(form, target.info);
+      target.times[form] = watch.milliseconds();
       if (!pipeline) {
         for (VkPipeline made : target.pipelines)
           context.device.vk.DestroyPipeline(context.device.device, made, nullptr);

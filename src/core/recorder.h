@@ -107,6 +107,9 @@ public:
   Result<void> record(const Record& record);
   Result<void> recordDraw(const DrawRecord& record);
 
+  /// Of the compute shaders, then of each target's draws. Throws std::bad_alloc.
+  std::pmr::vector<GpgpPipelineInfo> pipelines() const;
+
   // For tools.
   /// Whether the last recording ran a pass.
   bool ran(uint32_t pass) const { return ran_[pass]; }
@@ -141,8 +144,9 @@ protected:
   };
   /// draws: the forms that a draw comes in, at most kMaxDrawForms.
   Result<void> init(PassList passes, std::span<const DrawShaders> draws = {});
-  /// A pipeline with this recorder's layout; all recorders of a class have layouts that are compatible.
-  Result<VkPipeline> createComputePipeline(const ShaderDesc& shader) const;
+  /// A pipeline that stands in for the pass list's shader `place` (Record::replacement). Other recorders of the class
+  /// take it as well where that shader has ShaderDesc::bindings.
+  Result<VkPipeline> createComputePipeline(const ShaderDesc& shader, uint32_t place) const;
   /// Of a shader of the pass list, once prewarmed.
   VkPipeline pipelineOf(uint32_t shader) const { return pipelines_[shader]; }
 
@@ -155,17 +159,35 @@ private:
     uint32_t readBackBytes = 0;
     std::array<uint32_t, 4> note = {};
   };
+  /// Descriptors that shaders share. All shaders are in one group, unless the device has fewer storage buffers a stage
+  /// than the recorder has: then shaders are together as far as what they bind fits.
+  struct BindingGroup {
+    uint64_t resources = 0; ///< a bit each
+    VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+  };
   struct Target {
     GpgpTargetInfo info;
     std::array<VkPipeline, kMaxDrawForms> pipelines;
+    std::array<float, kMaxDrawForms> times; ///< milliseconds that these took
   };
 
   Result<uint32_t> acquire() const;
   void take(uint32_t slot, uint64_t tag, bool report, uint32_t readBackBytes = 0);
   void recordNothing(const Record& record, uint32_t slot) const;
-  void writeDescriptors(uint32_t slot, const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
+  VkShaderStageFlags shaderStages() const {
+    return VK_SHADER_STAGE_COMPUTE_BIT |
+           (draws_ ? VkShaderStageFlags(VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT) : 0);
+  }
+  Result<void> groupBindings(uint32_t formCount);
+  Result<void> createLayouts();
+  Result<void> createSets(uint32_t slotCount);
+  /// Of the groups from `first` on.
+  void writeDescriptors(uint32_t slot, uint32_t first, uint32_t groupCount,
+                        const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
                         VkDeviceSize scratchOffset, bool reports) const;
-  Result<VkPipeline> createDrawPipeline(const DrawShaders& draw, const GpgpTargetInfo& target) const;
+  VkDescriptorSet setOf(uint32_t slot, uint32_t group) const { return sets_[slot * groups_.size() + group]; }
+  Result<VkPipeline> createDrawPipeline(uint32_t form, const GpgpTargetInfo& target) const;
   Result<VkShaderModule> createModule(const ShaderDesc& shader) const;
   void beginLabel(VkCommandBuffer commandBuffer, const char* pass) const;
   void endLabel(VkCommandBuffer commandBuffer) const;
@@ -179,12 +201,16 @@ private:
   std::array<DrawShaders, kMaxDrawForms> draw_{};
   uint32_t drawForms_ = 0;
   bool draws_ = false;
-  VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE, textureLayout_ = VK_NULL_HANDLE;
+  std::pmr::vector<BindingGroup> groups_; // of shaders, then of draws that have groups of their own
+  uint32_t computeGroups_ = 0;            // of groups_
+  std::pmr::vector<uint8_t> groupOf_;     // by shader
+  std::array<uint8_t, kMaxDrawForms> groupOfDraw_ = {};
+  VkDescriptorSetLayout textureLayout_ = VK_NULL_HANDLE;
   uint32_t firstTexture_ = 0, textureCount_ = 0; // textures lie in a row
-  VkPipelineLayout layout_ = VK_NULL_HANDLE;
   VkDescriptorPool pool_ = VK_NULL_HANDLE;
-  std::pmr::vector<VkDescriptorSet> sets_, textureSets_;
-  std::pmr::vector<VkPipeline> pipelines_; // by shader; filled by prewarm
+  std::pmr::vector<VkDescriptorSet> sets_, textureSets_; // sets_: by slot and group
+  std::pmr::vector<VkPipeline> pipelines_;               // by shader; filled by prewarm
+  std::pmr::vector<float> pipelineTimes_;                // milliseconds that these took
   std::array<Target, kMaxTargets> targets_ = {};
   std::atomic<uint32_t> targetCount_{0};
   std::atomic<bool> ready_{false};

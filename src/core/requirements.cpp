@@ -17,7 +17,7 @@ constexpr Limit kLimits[] = {
     {&VkPhysicalDeviceLimits::maxPushConstantsSize, 128, "maxPushConstantsSize >= 128"},
     {&VkPhysicalDeviceLimits::maxComputeWorkGroupInvocations, 256, "maxComputeWorkGroupInvocations >= 256"},
     {&VkPhysicalDeviceLimits::maxComputeSharedMemorySize, 16384, "maxComputeSharedMemorySize >= 16384"},
-    {&VkPhysicalDeviceLimits::maxPerStageDescriptorStorageBuffers, 24, "maxPerStageDescriptorStorageBuffers >= 24"},
+    {&VkPhysicalDeviceLimits::maxPerStageDescriptorStorageBuffers, 16, "maxPerStageDescriptorStorageBuffers >= 16"},
     {&VkPhysicalDeviceLimits::maxPerStageDescriptorStorageImages, 4, "maxPerStageDescriptorStorageImages >= 4"},
     {&VkPhysicalDeviceLimits::maxStorageBufferRange, 1u << 27, "maxStorageBufferRange >= 134217728"},
 };

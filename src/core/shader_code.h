@@ -2,18 +2,13 @@
 // differ little (src/cmake/shaders.cmake).
 #pragma once
 #include "core/result.h"
+#include "core/shader_pack.h"
 
 #include <memory_resource>
 #include <span>
 #include <vector>
 
 namespace gpgp::core {
-
-struct ShaderPack {
-  const unsigned char* bytes; ///< one frame of zstd
-  uint32_t size;              ///< bytes
-  uint32_t words;             ///< when unpacked
-};
 
 /// One module: words at hand, which must outlive it, or a part of a pack.
 struct ShaderCode {
@@ -42,5 +37,9 @@ private:
   std::pmr::vector<uint32_t> unpacked_;
   std::span<const uint32_t> words_;
 };
+
+/// The bindings of descriptor set 0 that a module's functions use, a bit each: they are below 64, and at most 64
+/// variables.
+uint64_t bindingsOf(std::span<const uint32_t> words);
 
 } // namespace gpgp::core

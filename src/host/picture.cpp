@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csetjmp>
+#include <new>
 #include <stdexcept>
 
 namespace gpgp::host {
@@ -42,6 +44,55 @@ Picture readPng(const std::filesystem::path& file) {
     throw std::runtime_error(file.string() + ": " + image.message);
   }
   return picture;
+}
+
+namespace {
+struct PngReader {
+  std::vector<uint8_t> bytes;
+  size_t at = 0;
+  std::string message;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
+
+  static void fail(png_structp png, png_const_charp text) {
+    static_cast<PngReader*>(png_get_error_ptr(png))->message = text;
+    png_longjmp(png, 1);
+  }
+  static void read(png_structp png, png_bytep to, size_t size) {
+    PngReader& from = *static_cast<PngReader*>(png_get_io_ptr(png));
+    if (size > from.bytes.size() - from.at) png_error(png, "the file is cut");
+    std::copy_n(from.bytes.begin() + std::ptrdiff_t(from.at), size, to);
+    from.at += size;
+  }
+  /// False: libpng has jumped back, past nothing that has a destructor.
+  bool run() {
+    if (setjmp(png_jmpbuf(png))) return false;
+    png_set_read_fn(png, this, read);
+    png_read_png(png, info, PNG_TRANSFORM_EXPAND, nullptr);
+    return true;
+  }
+};
+} // namespace
+
+Heights readHeights(const std::filesystem::path& file) {
+  PngReader reader;
+  reader.bytes = readFile(file);
+  reader.png =
+      png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, PngReader::fail, [](png_structp, png_const_charp) {});
+  reader.info = reader.png ? png_create_info_struct(reader.png) : nullptr;
+  if (!reader.info) throw std::bad_alloc();
+  if (!reader.run()) throw std::runtime_error(file.string() + ": " + reader.message);
+  Heights heights{png_get_image_width(reader.png, reader.info), png_get_image_height(reader.png, reader.info), {}};
+  const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
+  const size_t stride = png_get_channels(reader.png, reader.info) * (wide ? 2u : 1u);
+  png_bytepp rows = png_get_rows(reader.png, reader.info);
+  for (uint32_t y = 0; y < heights.height; ++y)
+    for (size_t x = 0; x < heights.width; ++x) {
+      const png_bytep texel = rows[y] + x * stride;
+      heights.values.push_back(static_cast<uint16_t>(wide ? texel[0] << 8 | texel[1] : texel[0] * 257));
+    }
+  return heights;
 }
 
 float linearFromSrgb(float value) {

@@ -16,6 +16,13 @@ struct Picture {
 void writePng(const std::filesystem::path& file, const Picture& picture);
 Picture readPng(const std::filesystem::path& file);
 
+/// Of a PNG's first channel what the file says: no gamma, no colour space. 8 bits become 16.
+struct Heights {
+  uint32_t width = 0, height = 0;
+  std::vector<uint16_t> values; ///< rows from the top
+};
+Heights readHeights(const std::filesystem::path& file);
+
 /// From PNG, JPEG, GIF or, with libwebp, WebP in memory; empty where it is none, or damaged, or larger than 16384
 /// pixels a side.
 Picture decodePicture(std::span<const uint8_t> bytes);

@@ -33,7 +33,7 @@ awk -f "$tests/declarations.awk" "$include"/gpgp/*.h | awk -F'\t' -v contract="$
     if (split(words, unused, " ") < 3) complain("says nothing of what it does before its tags")
     if ($3 !~ /@threads (any|context|handle)/) complain("no @threads any|context|handle")
     if ($2 ~ /const [A-Za-z]+\*/ && $3 !~ /@lifetime (call|frame|handle)/) complain("no @lifetime call|frame|handle")
-    if ($2 ~ /^Gpgp(Context|Asset|Recorder|History|List|GrammarBuilder|Font|Shaper|Layout|Evaluator|Evaluation) / &&
+    if ($2 ~ /^Gpgp(Context|Asset|Recorder|History|List|GrammarBuilder|Font|Shaper|Layout|Evaluator|Evaluation|CgaProgram|CgaDerivation) / &&
         wrapped !~ $1 "[(,]") complain("not in any C++ header")
     if ($1 ~ /^gpgpCreate/ && $3 !~ /Errors: /) complain("no list of errors")
     if ($2 ~ /VkCommandBuffer/) {

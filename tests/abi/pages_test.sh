@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The code of docs/guide/integrate_in_ten_minutes.md compiles: its C blocks as one C99 file, its C++ blocks as one C++17
-# file; and so does the C of the guides of spawn, worlds, fits, scattering, vector, Lottie and user interfaces.
+# file; and so does the C of the guides of spawn, worlds, levels of detail, fields, fits, scattering, vector, Lottie and user interfaces.
 # The links of README.md, of all pages below docs/ and of the integrations' pages lead to files, and to headings of
 # these where a link names one; docs/README.md lists each page, and docs/guide/integrations.md each integration's, which
 # has the sections that they all have.
@@ -21,7 +21,7 @@ code() {
 code c | "$cc" -std=c99 "${flags[@]}" -x c -
 code cpp | "$cxx" -std=c++17 "${flags[@]}" -x c++ -
 failed=no
-for guide in spawn world fit scatter vector lottie patches ui; do
+for guide in spawn world level_of_detail fields fit scatter vector lottie patches ui; do
   [[ $(page=$docs/guide/$guide.md code c | grep -c .) -gt 15 ]] || { echo "no code in guide/$guide.md" >&2; exit 1; }
   echo "guide/$guide.md"
   page=$docs/guide/$guide.md code c | "$cc" -std=c99 "${flags[@]}" -x c -

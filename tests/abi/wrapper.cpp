@@ -180,6 +180,18 @@ GpgpResult useEvaluator() {
   return evaluation->result().code();
 }
 
+GpgpResult useCga() {
+  auto program = gpgp::CgaProgram::create(gpgp::init<GpgpCgaProgramCreateInfo>());
+  if (!program) return program.code();
+  uint32_t count = 0;
+  if (const GpgpResult code = program->attributes(count, nullptr)) return code;
+  if (const auto graph = program->graph(nullptr, 0); !graph) return graph.code();
+  auto derivation = program->derivation();
+  if (!derivation) return derivation.code();
+  if (const GpgpResult code = derivation->derive(gpgp::init<GpgpCgaDerivationInfo>())) return code;
+  return derivation->result().code();
+}
+
 GpgpResult useText() {
   auto font = gpgp::Font::create(gpgp::init<GpgpFontCreateInfo>());
   auto shaper = gpgp::Shaper::create();
@@ -239,6 +251,7 @@ GpgpResult useEverything(const GpgpContextCreateInfo& info, VkCommandBuffer cmd)
   if (const GpgpResult code = useGrammarBuilder()) return code;
   if (const GpgpResult code = useVector(*context, frame, cmd)) return code;
   if (const GpgpResult code = useEvaluator()) return code;
+  if (const GpgpResult code = useCga()) return code;
   if (const GpgpResult code = useTiles(*context, frame, cmd)) return code;
   if (const GpgpResult code = useText()) return code;
   if (const GpgpResult code = useAtlas(*context, frame, cmd)) return code;

@@ -137,6 +137,7 @@ TEST_F(ArgumentsTest, HandlesOfNothing) {
   EXPECT_EQ(gpgpPrewarm(nullptr, nullptr), GPGP_ERROR_INVALID_HANDLE);
   EXPECT_EQ(gpgpGetScratchSize(nullptr, &size, nullptr, nullptr), GPGP_ERROR_INVALID_HANDLE);
   EXPECT_EQ(gpgpGetPasses(nullptr, &count, nullptr), GPGP_ERROR_INVALID_HANDLE);
+  EXPECT_EQ(gpgpGetPipelines(nullptr, &count, nullptr), GPGP_ERROR_INVALID_HANDLE);
   EXPECT_EQ(gpgpRecordUpload(nullptr, VK_NULL_HANDLE, &frame, 0, nullptr), GPGP_ERROR_INVALID_HANDLE);
   gpgpDestroyAsset(nullptr);
   gpgpDestroyRecorder(nullptr);

@@ -419,7 +419,27 @@ TEST_P(ContractTest, NotReadyRecordsNothing) {
     messages.clear();
   };
   expectSaidOnce("gpgpPrewarm");
+  const auto pipelines = [&] {
+    uint32_t count = 0;
+    EXPECT_EQ(gpgpGetPipelines(scenario->recorder, &count, nullptr), GPGP_SUCCESS);
+    std::vector<GpgpPipelineInfo> list(count);
+    EXPECT_EQ(gpgpGetPipelines(scenario->recorder, &count, list.data()), GPGP_SUCCESS);
+    return list;
+  };
+  for (const GpgpPipelineInfo& pipeline : pipelines()) EXPECT_EQ(pipeline.milliseconds, 0) << pipeline.name;
   ASSERT_EQ(scenario->prewarm(), GPGP_SUCCESS);
+  EXPECT_FALSE(pipelines().empty());
+  for (const GpgpPipelineInfo& pipeline : pipelines()) {
+    EXPECT_STRNE(pipeline.name, "");
+    EXPECT_GT(pipeline.codeBytes, 100u) << pipeline.name;
+    EXPECT_GT(pipeline.milliseconds, 0) << pipeline.name;
+  }
+  uint32_t none = 0;
+  GpgpPipelineInfo first{};
+  EXPECT_EQ(gpgpGetPipelines(scenario->recorder, &none, &first), GPGP_INCOMPLETE);
+  EXPECT_EQ(none, pipelines().size());
+  EXPECT_EQ(first.name, nullptr);
+  messages.clear();
   proxy.clear();
   expectSaidOnce("not resident");
   EXPECT_TRUE(proxy.calls.empty()) << proxy.calls.front().name;

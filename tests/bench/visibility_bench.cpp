@@ -136,8 +136,8 @@ bool benchScene(Runner& runner, const Scene& scene, const std::string& name, con
     std::printf(", %u visible at %u x %u + 1 %s",
                 runner.metrics(standard, reference, reference, nullptr, nullptr).reference, options.reference,
                 options.reference, options.rays ? "rays" : "samples");
-  std::printf("\n  %-16s %9s %9s %9s %9s %9s %7s %10s %10s\n", "method", "visible", "cov %", "cov area", "over %", "ms",
-              "ratio", "candidates", "pairs");
+  std::printf("\n  %-16s %9s %9s %9s %9s %9s %7s %10s %10s %10s\n", "method", "visible", "cov %", "cov area", "over %",
+              "ms", "ratio", "candidates", "pairs", "unresolved");
   double baseline = 0;
   bool good = true;
   const auto bench = [&](const std::string& method, VisibilityRecorder& recorder, const Sampling& sampling) {
@@ -147,9 +147,9 @@ bool benchScene(Runner& runner, const Scene& scene, const std::string& name, con
       m = runner.metrics(recorder, runner.bits(), reference, &counts, options.recheck ? &recheck : nullptr);
     if (baseline == 0) baseline = run.milliseconds;
     const auto percent = [](float share) { return 100 * static_cast<double>(share); };
-    std::printf("  %-16s %9u %9.3f %9.4f %9.3f %9.4f %7.2f %10u %10u%s\n", method.c_str(), run.report.visible,
+    std::printf("  %-16s %9u %9.3f %9.4f %9.3f %9.4f %7.2f %10u %10u %10u%s\n", method.c_str(), run.report.visible,
                 percent(m.coverage), percent(m.coverageArea), percent(m.overestimation), run.milliseconds,
-                run.milliseconds / baseline, run.report.neededCandidates, run.report.neededPairs,
+                run.milliseconds / baseline, run.report.neededCandidates, run.report.neededPairs, run.report.unresolved,
                 run.report.base.status == GPGP_SUCCESS ? "" : " BUDGET");
     if (options.passes)
       for (const auto& [pass, time] : run.passes)

@@ -8,15 +8,18 @@ namespace {
 TEST(CliCga, BudgetsNameTheRuleTheOperationAndThePlace) {
   const TemporaryFile file("grow.cga", "Lot --> extrude(2) A\nA -->\n  extrude(0.5) A\n");
   const std::string faces = gpgpFailure({"spawn", file.path(), "--max-faces", "100"});
-  EXPECT_NE(faces.find(":3:3: error: rule 'A', 'extrude': a shape has 216 faces, more than 100; --max-faces"),
-            std::string::npos)
+  EXPECT_NE(
+      faces.find(":3:3: error: rule 'A', 'extrude': a shape has 216 faces, more than 100; maxFaces (--max-faces)"),
+      std::string::npos)
       << faces;
   const std::string vertices = gpgpFailure({"spawn", file.path(), "--max-vertices", "100"});
-  EXPECT_NE(vertices.find("vertices, more than 100; --max-vertices allows more"), std::string::npos) << vertices;
+  EXPECT_NE(vertices.find("vertices, more than 100; maxVertices (--max-vertices) allows more"), std::string::npos)
+      << vertices;
   const std::string work = gpgpFailure({"spawn", file.path(), "--max-work", "1"});
-  EXPECT_NE(work.find("takes more than 1 million steps; --max-work allows more"), std::string::npos) << work;
+  EXPECT_NE(work.find("takes more than 1 million steps; maxWork (--max-work) allows more"), std::string::npos) << work;
   const std::string meshes = gpgpFailure({"spawn", file.path(), "--max-geometry", "2"});
-  EXPECT_NE(meshes.find("need more than 2 MiB; --max-geometry allows more"), std::string::npos) << meshes;
+  EXPECT_NE(meshes.find("need more than 2 MiB; maxGeometryMiB (--max-geometry) allows more"), std::string::npos)
+      << meshes;
   const TemporaryFile other("box.pga", "axiom Box A;\nterminal B;\nA --> B;\n");
   EXPECT_EQ(gpgp({"spawn", other.path(), "--max-work", "3"}).exitCode, 2);
 }
@@ -73,6 +76,115 @@ TEST(CliCga, DerivesOnTheGpuOrSaysWhatKeepsItOnTheCpu) {
   const TemporaryFile triangle("t.json", lots("[0,0],[10,0],[8,20],[0,0]"));
   EXPECT_TRUE(gpgpJson({"spawn", box.path(), "--axiom-file", rectangle.path()})["device"].is_string());
   EXPECT_TRUE(gpgpJson({"spawn", box.path(), "--axiom-file", triangle.path()})["device"].is_null());
+}
+
+TEST(CliCga, FieldsAreReadOnBothSidesAndGiveAttributes) {
+  // 8-bit greys over 3 by 3 metres are too few; the sample's hills do.
+  const std::string hills = std::string("ground=") + GPGP_SAMPLE_GRAMMARS + "/../world/hills.png,-160,-160,160,160,60";
+  const TemporaryFile file("field.cga", "attr least = 20\nLot --> case Field(\"ground\") > least: extrude(max(1, "
+                                        "Field(\"ground\") / 10)) High. else: Low.\n");
+  const std::vector<std::string> spawn{"spawn",   file.path(), "--axioms", "60",      "--axiom-size",
+                                       "10,1,10", "--spacing", "30",       "--field", hills};
+  const auto with = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = spawn;
+    all.insert(all.end(), more.begin(), more.end());
+    return gpgpJson(all);
+  };
+  const json gpu = with({}), cpu = with({"--device", "cpu"});
+  EXPECT_TRUE(gpu["device"].is_string()) << gpu;
+  for (const char* same : {"terminals", "rules", "triangles"}) EXPECT_EQ(gpu[same], cpu[same]) << same;
+  EXPECT_EQ(gpu["rules"].size(), 2u);
+  // The same field as the value of an attr: nothing is higher than the field itself.
+  std::string other = hills;
+  const json own = with({"--field", other.replace(0, 6, "least")});
+  EXPECT_TRUE(own["device"].is_null());
+  EXPECT_EQ(own["on_cpu_because"], "'least', an attr that has its value from a field, derives on the CPU");
+  ASSERT_EQ(own["rules"].size(), 1u);
+  EXPECT_EQ(own["rules"][0]["rule"], "Low");
+  EXPECT_EQ(with({"--field", other, "--attr", "least=-1"})["rules"][0]["rule"], "High");
+
+  const ProcessResult missing = gpgp({"spawn", file.path()});
+  EXPECT_EQ(missing.exitCode, 2);
+  EXPECT_NE(missing.err.find(":2:14: field \"ground\" is read, and is not among the fields"), std::string::npos)
+      << missing.err;
+  EXPECT_NE(gpgp({"spawn", file.path(), "--field", hills, "--field", "x" + hills}).err.find("nothing reads this field"),
+            std::string::npos);
+  const TemporaryFile lsystem("f.lsys", "axiom: F\n");
+  EXPECT_EQ(gpgp({"spawn", lsystem.path(), "--field", hills}).exitCode, 2);
+}
+
+TEST(CliCga, EdgeAttributesAndPlacesComeFromGeoJson) {
+  const TemporaryFile file("edges.cga", "Lot --> comp(fe) { all: report(edgeAttr.getString(\"use\"), scope.sx) "
+                                        "report(\"w\", edgeAttr.getFloat(\"w\") * scope.sx) NIL }\n");
+  const auto plot = [](const std::string& ring, const std::string& uses) {
+    return "{\"type\": \"Feature\", \"properties\": {\"/edgeattr/use\": " + uses +
+           ", \"/edgeattr/w\": [1, 2, 3, 4]}, \"geometry\": {\"type\": \"Polygon\", \"coordinates\": [" + ring + "]}}";
+  };
+  const std::string uses = "[\"road\", \"wall\", \"park\", \"wall\"]";
+  // Both ways round: the edge from (0, 0) to (10, 0) is the road's.
+  const TemporaryFile left("left.json", plot("[[0,0],[10,0],[10,20],[0,20],[0,0]]", uses));
+  const TemporaryFile right("right.json", plot("[[10,0],[0,0],[0,20],[10,20],[10,0]]", uses));
+  for (const TemporaryFile* lots : {&left, &right}) {
+    const json result = gpgpJson({"spawn", file.path(), "--axiom-file", lots->path()});
+    EXPECT_NEAR(result["reports"]["road"].get<double>(), 10, 1e-4);
+    EXPECT_NEAR(result["reports"]["park"].get<double>(), 10, 1e-4);
+    EXPECT_NEAR(result["reports"]["wall"].get<double>(), 40, 1e-4);
+    EXPECT_NEAR(result["reports"]["w"].get<double>(), 10 * (1 + 3) + 20 * (2 + 4), 1e-3);
+  }
+  const TemporaryFile few("few.json", plot("[[0,0],[10,0],[10,20],[0,20],[0,0]]", "[\"road\"]"));
+  const std::string error = gpgpFailure({"spawn", file.path(), "--axiom-file", few.path()});
+  EXPECT_NE(error.find("\"/edgeattr/use\" is an array of a value for each of the 4 edges"), std::string::npos) << error;
+
+  const TemporaryFile where("where.cga",
+                            "Lot --> report(\"lon\", getGeoCoord(lon)) report(\"lat\", getGeoCoord(lat)) A.\n");
+  const TemporaryFile town("town.json", "{\"type\": \"Polygon\", \"coordinates\": "
+                                        "[[[8.5,47.25],[8.501,47.25],[8.501,47.251],[8.5,47.251],[8.5,47.25]]]}");
+  const json place = gpgpJson({"spawn", where.path(), "--axiom-file", town.path(), "--geographic"});
+  EXPECT_NEAR(place["reports"]["lon"].get<double>(), 8.5, 2e-6);
+  EXPECT_NEAR(place["reports"]["lat"].get<double>(), 47.25, 0.00101); // a corner of it
+}
+
+TEST(CliCga, AttributesAreListedWithRangesAndGroups) {
+  const TemporaryFile file("list.cga", "@Group(\"Building\", 1) @Range(min=3, max=60, stepsize=0.5) @Order(2)\n"
+                                       "@Description(\"Of the walls\") @Distance attr height = 9\n"
+                                       "@Enum(valuesAttr=kinds) attr roof = \"gable\"\n"
+                                       "@Hidden attr kinds = [\"gable\", \"hip\"]\n"
+                                       "@Group @Color attr wall = \"#ff8000\"\nLot --> extrude(height) A.\n");
+  const json all = gpgpJson({"spawn", file.path(), "--attributes"});
+  ASSERT_EQ(all["attributes"].size(), 4u);
+  const json& height = all["attributes"][0];
+  EXPECT_EQ(height["name"], "height");
+  EXPECT_EQ(height["type"], "number");
+  EXPECT_EQ(height["value"], 9);
+  EXPECT_EQ(height["min"], 3);
+  EXPECT_EQ(height["max"], 60);
+  EXPECT_EQ(height["step"], 0.5);
+  EXPECT_EQ(height["restricted"], true);
+  EXPECT_EQ(height["groups"], json({"Building"}));
+  EXPECT_EQ(height["group_order"], 1);
+  EXPECT_EQ(height["order"], 2);
+  EXPECT_EQ(height["kind"], "distance");
+  EXPECT_EQ(height["description"], "Of the walls");
+  EXPECT_EQ(all["attributes"][1]["choices"], json({"gable", "hip"}));
+  EXPECT_EQ(all["attributes"][1]["groups"], json({"Building"}));
+  EXPECT_TRUE(all["attributes"][2]["hidden"].get<bool>());
+  EXPECT_TRUE(all["attributes"][3]["groups"].empty());
+  EXPECT_TRUE(all["attributes"][3]["min"].is_null());
+  EXPECT_EQ(all["attributes"], gpgpJson({"spawn", file.path(), "--device", "cpu"})["attributes"]);
+  EXPECT_EQ(gpgp({"spawn", file.path(), "--attributes"}).out,
+            "Building\n  height = 9  [3 .. 60 by 0.5]  distance  Of the walls\n"
+            "  roof = \"gable\"  {gable, hip}\nwithout a group\n  wall = \"#ff8000\"  color\n");
+  const TemporaryFile box("box.pga", "axiom Box A;\nterminal B;\nA --> B;\n");
+  EXPECT_EQ(gpgp({"spawn", box.path(), "--attributes"}).exitCode, 2);
+}
+
+TEST(CliCga, AssetsHaveTheNamesOfTheirFiles) {
+  const TemporaryFile tree("tree.obj",
+                           "o Crown\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl leaf\nf 1 2 3\ng Trunk\nusemtl bark\nf 1 3 2\n");
+  const std::string name = tree.path().substr(tree.path().rfind('/') + 1);
+  const TemporaryFile file("names.cga", "Lot --> print(assetNamingInfo(\"" + name + "\", g)) print(assetNamingInfo(\"" +
+                                            name + "\", m)) NIL\n");
+  EXPECT_EQ(gpgpJson({"spawn", file.path()})["prints"], json({"Crown;Trunk;", "leaf;bark;"}));
 }
 
 TEST(CliCga, WhatNeedsAGraphSaysWhoHasNone) {

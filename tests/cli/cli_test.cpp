@@ -22,6 +22,29 @@ TEST(Cli, InfoForPeople) {
   EXPECT_NE(result.out.find("This device can run gpgp."), std::string::npos) << result.out;
 }
 
+TEST(Cli, PipelinesAndWhatTheyCost) {
+  const json all = gpgpJson({"info", "--pipelines"})["recorders"];
+  std::map<std::string, size_t> counts;
+  for (const json& recorder : all) {
+    double milliseconds = 0;
+    uint64_t bytes = 0;
+    for (const json& pipeline : recorder["pipelines"]) {
+      EXPECT_NE(pipeline["name"], "");
+      EXPECT_GT(pipeline["ms"], 0);
+      milliseconds += pipeline["ms"].get<double>();
+      bytes += pipeline["code_bytes"].get<uint64_t>();
+    }
+    EXPECT_NEAR(recorder["ms"], milliseconds, 1e-3 * milliseconds);
+    EXPECT_EQ(recorder["code_bytes"], bytes);
+    counts[recorder["name"]] = recorder["pipelines"].size();
+  }
+  EXPECT_EQ(counts.size(), all.size());
+  EXPECT_LT(counts["canvas for RGBA8 images"], counts["canvas"]);
+  EXPECT_LT(counts["canvas"], counts["canvas with layers"]);
+  EXPECT_GT(counts["spawner"], 0u);
+  EXPECT_GT(counts["visibility recorder, exact"], counts["visibility recorder, standard"]);
+}
+
 TEST(Cli, ADeviceCanBeNamed) {
   const std::string name = gpgpJson({"info"})["device"]["name"];
   EXPECT_EQ(gpgpJson({"info", "--device", "0"})["device"]["index"], 0);

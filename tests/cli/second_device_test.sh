@@ -54,6 +54,12 @@ both vector "$gpgp" vector "$source/tests/data/svg/hud.svg" --size 512x512 --out
 sameFields vector paths patches tile_entries
 # A gradient may be rounded otherwise; coverage may not.
 "$compare" "$out/vector.1.png" "$out/vector.2.png" 1 0 || fail "the drawing's pictures differ"
+# Thin frames along the page, at widths of 256 to 2048, beside cairo's tile by tile.
+pages=$(dirname "$gpgp")/vector_page_test
+if [[ -x $pages ]]; then
+  onSwiftShader "$pages" --gtest_filter='PageTest.*:*AtAnySize*' >"$out/pages.txt" 2>&1 ||
+    fail "pages on SwiftShader: $(grep -m 3 -A 3 Failure "$out/pages.txt")"
+fi
 both visibility "$gpgp" visibility "$source/tests/data/cases/visibility/rooms.obj" --method exact --size 256x256 --json
 sameFields visibility visible coveredPixels
 if ((${#samples[@]})); then

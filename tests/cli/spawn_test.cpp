@@ -47,6 +47,7 @@ TEST(CliSpawn, CountsTerminals) {
                                                 "peak_shapes",
                                                 "max_shapes",
                                                 "measures",
+                                                "detail",
                                                 "max_rounds",
                                                 "dropped_shapes",
                                                 "unfinished_shapes",

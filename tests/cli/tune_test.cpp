@@ -1,5 +1,6 @@
 // `gpgp tune` as a person or a script uses it.
 #include "files.h"
+#include "host/picture.h"
 #include "run.h"
 
 #include <cstdlib>
@@ -210,6 +211,25 @@ TEST(CliTune, FilesSayWhyTheyAreNoSchedules) {
       EXPECT_NE(gpgpFailure(command).find(why), std::string::npos) << why << " by " << command[0];
   }
   EXPECT_FALSE(std::filesystem::exists(out.path()));
+}
+
+/// Heights of a field decide what is derived: four boxes side by side where the ground is above 0.5.
+TEST(CliTune, GrammarsWithFields) {
+  const TemporaryFile grammar("field.pga", "axiom Box S;\nterminal T (1, 0);\nterminal U (1, 1);\n"
+                                           "S = If(Field(f) > 0.5) { Repeat(X, 0.25, ADJUST_TO_FILL) T | U };\n"),
+      picture("field.png");
+  host::writePng(picture.path(), {2, 1, {0, 0, 0, 255, 255, 255, 255, 255}});
+  const Cache cache("field");
+  const std::string field = "f=" + picture.path() + ",-1000,0,1000,0.001";
+  const std::vector<std::string> tune = {"tune",      grammar.path(), "--axioms", "4",
+                                         "--seconds", "0.001",        "--field",  field};
+  const json tuned = gpgpJson(tune);
+  // A field of 0.5 at the origin, as good as flat there: with twice the scale all is above, as it is all below here.
+  const json found =
+      gpgpJson({"spawn", grammar.path(), "--schedule", "tuned", "--axioms", "4", "--field", field + ",2"});
+  EXPECT_EQ(found["schedule_file"], tuned["out"]);
+  EXPECT_EQ(found["terminals"], 16);
+  EXPECT_EQ(gpgp({"tune", grammar.path()}).exitCode, 2);
 }
 
 TEST(CliTune, WrongUsage) {

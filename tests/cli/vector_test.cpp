@@ -329,6 +329,23 @@ TEST(CliVector, TextHasTheSystemsFontsWhereNoneAreGiven) {
   EXPECT_GT(std::count(found.rgba.begin(), found.rgba.end(), 255), 30) << "it is blank";
 }
 
+TEST(CliVector, MarksOfTextTakeNoRoom) {
+  const std::string font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+  if (!std::ifstream(font)) GTEST_SKIP() << "fonts-dejavu-core is not there";
+  const auto drawn = [&](const std::string& word) {
+    const TemporaryFile file("mark.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='80' height='50'><text x='70' "
+                                         "y='30' font-size='24' text-anchor='end'>" +
+                                             word + "</text></svg>"),
+        out("mark.png");
+    gpgpJson({"vector", file.path(), "--font", font, "--out", out.path()});
+    return host::readPng(out.path()).rgba;
+  };
+  const std::vector<uint8_t> bare = drawn("\u05dc"), marked = drawn("\u05dc\u05b0"); // a lamed; with a point below
+  const auto baseline = static_cast<ptrdiff_t>(29 * 80 * 4);
+  EXPECT_TRUE(std::equal(bare.begin(), bare.begin() + baseline, marked.begin())) << "the letter has moved";
+  EXPECT_NE(bare, marked);
+}
+
 TEST(CliVector, ShrunkImagesKeepTheirPlaces) {
   // Black to 7/8 of the width, then white: each texel is white by the part of it that lies there.
   const auto stepped = [](uint32_t width, uint32_t height, bool wide) {

@@ -10,7 +10,9 @@
 
 #include <atomic>
 #include <cstring>
+#include <deque>
 #include <map>
+#include <new>
 #include <random>
 #include <thread>
 
@@ -225,6 +227,45 @@ TEST(Slots, AHandleIsNotMistakenForItsSuccessor) {
     gpgpDestroyAsset(next);
   }
   gpgpDestroyContext(handle);
+}
+
+TEST(Slots, ObjectsThatComeAndGoForEverTakeNoMoreMemory) {
+  struct Heap {
+    int64_t bytes = 0;
+  } heap;
+  const GpgpHostAllocator allocator{&heap,
+                                    [](void* user, size_t size, size_t alignment) -> void* {
+                                      static_cast<Heap*>(user)->bytes += static_cast<int64_t>(size);
+                                      return ::operator new(size, std::align_val_t(alignment));
+                                    },
+                                    [](void* user, void* memory, size_t size, size_t alignment) {
+                                      static_cast<Heap*>(user)->bytes -= static_cast<int64_t>(size);
+                                      ::operator delete(memory, std::align_val_t(alignment));
+                                    }};
+  host::HeadlessDevice device;
+  GpgpContextCreateInfo info = device.contextCreateInfo();
+  info.hostAllocator = &allocator;
+  GpgpContext handle = nullptr;
+  ASSERT_EQ(gpgpCreateContext(&info, &handle), GPGP_SUCCESS);
+  const std::vector<uint32_t> data(4, 1);
+  VkBool32 resident = VK_FALSE;
+  std::deque<GpgpAsset> destroyed;
+  int64_t most[3] = {}; // of thirds: the first fills the queue of worn slots
+  for (uint64_t i = 0; i < 210'000; ++i) {
+    const GpgpAsset next = api::adopt<GpgpAsset>(of(handle), ToyAsset::create(of(handle), data));
+    gpgpDestroyAsset(next);
+    if (i % 50 == 0) {
+      const GpgpFrame frame{i / 50 + 2, i / 50 + 1};
+      ASSERT_EQ(gpgpAdvance(handle, &frame), GPGP_SUCCESS);
+      most[i / 70'000] = std::max(most[i / 70'000], heap.bytes);
+      destroyed.push_back(next);
+      if (destroyed.size() > 20) destroyed.pop_front(); // 1 000 objects ago
+      for (const GpgpAsset old : destroyed) ASSERT_EQ(gpgpGetResidency(old, &resident), GPGP_ERROR_INVALID_HANDLE);
+    }
+  }
+  EXPECT_EQ(most[1], most[2]);
+  gpgpDestroyContext(handle);
+  EXPECT_EQ(heap.bytes, 0);
 }
 
 TEST(Residency, WhatIsDestroyedBeforeItsUploadIsForgotten) {

@@ -75,9 +75,11 @@ TEST(Loops, AreWholeBelowTheBoundAndElseKnownToHaveEnded) { expectWholeOrKnown(l
 
 #ifdef GPGP_TEST_OPTIMIZED
 TEST(Loops, AreSoInShadersThatTheKernelCompilerOptimised) {
-  const std::vector<uint32_t> optimized = spawn::optimize(loops);
-  ASSERT_FALSE(optimized.empty());
-  expectWholeOrKnown(optimized);
+  for (const auto target : {spawn::KernelTarget::software, spawn::KernelTarget::any}) {
+    const std::vector<uint32_t> optimized = spawn::optimize(loops, target);
+    ASSERT_FALSE(optimized.empty());
+    expectWholeOrKnown(optimized);
+  }
 }
 #endif
 

@@ -30,12 +30,15 @@ check gml "${words[@]}" X Y Z ADJUST_TO_FILL ANCHOR_TO_START ANCHOR_TO_END
 
 mapfile -t words < <(grep -oE '\{"\w+", (&Parser|GPGP_SHAPE)' src/spawn/lsystem/parser.cpp | cut -d'"' -f2
   grep -oE '\{"\w+",' src/spawn/lsystem/expressions.cpp | cut -d'"' -f2)
+# What headings of other languages are called within: no word of a file.
+mapfile -t words < <(printf '%s\n' "${words[@]}" | grep -vxE 'depth|endcode|arrays')
 check lsys "${words[@]}"
 
 names=src/spawn/cga/names.h
 mapfile -t words < <(
   { rows GPGP_CGA_OPERATIONS $names; rows GPGP_CGA_SETTABLE $names; rows GPGP_CGA_FUNCTIONS $names
     rows GPGP_CGA_MATH shaders/spawn/cga/program_format.h; } | sed -E \
-    -e '/^(scope|geometry|pivot|split|comp|initialShape|material)_/s/_/./g' -e 's/^printed$/print/')
+    -e '/^(scope|geometry|pivot|split|comp|initialShape|material|trim|edgeAttr)_/s/_/./g' -e 's/^printed$/print/' \
+    -e '/^(componentValues|arrayRows|sequence|eachAnd|eachOr|eachNot|componentResult)$/d')
 check cga "${words[@]}" attr const import style extends case else version
 [[ $failed == no ]]

@@ -22,7 +22,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   spawn::Graph linked(std::pmr::get_default_resource());
   spawn::addRegularPolygons(linked);
   spawn::Tags tags;
-  for (const char* name : {"a", "b"}) spawn::appendGraph(*graph, name, linked, tags);
+  spawn::Diagnostics diagnostics;
+  for (const char* name : {"a", "b"}) spawn::appendGraph(*graph, name, linked, tags, diagnostics);
   spawn::analyse(linked);
   if (linked.buckets <= shader::kMaxBuckets && !spawn::validate(linked)) std::abort();
   return 0;

@@ -1,6 +1,7 @@
 // Live editing in the mini-engine, by a script: what each state shows, against the CPU's derivation of the same text
 // and values; the old city under the message of a broken file.
 #include "host/picture.h"
+#include "live_run.h"
 #include "mini_engine/level.h"
 
 #include <gpgp/gpgp.hpp>
@@ -14,14 +15,7 @@
 namespace {
 namespace fs = std::filesystem;
 using gpgp::host::Picture;
-
-struct State {
-  std::string file;
-  unsigned instances = 0;
-  std::string keyHash;
-  int errorBox[4] = {};
-  std::vector<std::string> errors;
-};
+using namespace gpgp::test;
 
 struct LiveEditing : testing::Test {
   const fs::path folder = GPGP_GOLDEN_OUT "-live";
@@ -47,31 +41,7 @@ struct LiveEditing : testing::Test {
   }
   std::vector<State> run(const std::string& script) {
     write("script", script);
-    const std::string command = std::string("\"") + GPGP_MINI_ENGINE + "\" --data \"" + GPGP_TEST_DATA +
-                                "\" --live \"" + (folder / "city.pga").string() + "\" --script \"" +
-                                (folder / "script").string() + "\" --size 480x270 --validate --out \"" +
-                                folder.string() + "\" 2>&1";
-    FILE* pipe = popen(command.c_str(), "r");
-    EXPECT_NE(pipe, nullptr);
-    char part[512];
-    while (std::fgets(part, sizeof part, pipe)) output += part;
-    EXPECT_EQ(pclose(pipe), 0) << output;
-    std::vector<State> states;
-    std::istringstream lines(output);
-    for (std::string line; std::getline(lines, line);) {
-      if (line.rfind("error       ", 0) == 0 && !states.empty()) states.back().errors.push_back(line.substr(12));
-      if (line.rfind("live        ", 0) != 0) continue;
-      State& state = states.emplace_back();
-      state.file = line.substr(12, line.find(": ") - 12);
-      char hash[17] = {};
-      EXPECT_EQ(std::sscanf(line.c_str() + line.find(": "),
-                            ": %u instances, key hash %16[0-9a-f], errors at %d,%d to %d,%d", &state.instances, hash,
-                            &state.errorBox[0], &state.errorBox[1], &state.errorBox[2], &state.errorBox[3]),
-                6)
-          << line;
-      state.keyHash = hash;
-    }
-    return states;
+    return runLive(folder, "city.pga", output);
   }
   /// What the CPU makes of a text with other values.
   static void expectDerived(const State& state, const std::string& grammar, std::vector<GpgpVariable> variables) {
@@ -97,24 +67,11 @@ struct LiveEditing : testing::Test {
     const GpgpEvaluationResult result = *evaluation->result();
     char hash[17];
     std::snprintf(hash, sizeof hash, "%08x%08x", result.keyHash[1], result.keyHash[0]);
-    EXPECT_EQ(state.instances, result.terminals) << state.file;
+    EXPECT_EQ(state.count, result.terminals) << state.file;
     EXPECT_EQ(state.keyHash, hash) << state.file;
   }
   Picture picture(const State& state) const { return gpgp::host::readPng(state.file); }
-  /// Pixels that differ, outside of a box.
-  static size_t different(const Picture& a, const Picture& b, const int (&box)[4]) {
-    size_t count = 0;
-    for (uint32_t y = 0; y < a.height; ++y)
-      for (uint32_t x = 0; x < a.width; ++x) {
-        const bool inside = int(x) >= box[0] && int(x) < box[2] && int(y) >= box[1] && int(y) < box[3];
-        const size_t at = (size_t{y} * a.width + x) * 4;
-        count += !inside && !std::equal(&a.rgba[at], &a.rgba[at] + 4, &b.rgba[at]);
-      }
-    return count;
-  }
 };
-
-constexpr int kNowhere[4] = {};
 
 TEST_F(LiveEditing, AttributesAndFilesAreSeenAndBrokenOnesLeaveTheCity) {
   const std::string good = replaced(text, "var groundHeight = 4;", "var groundHeight = 7;");

@@ -121,8 +121,8 @@ cat >"$scratch/bin/cmake" <<END
 #!/usr/bin/env bash
 if [[ \$1 == --build ]]; then
   echo "cmake \$*" >>"$scratch/calls"
-  printf '#!/bin/sh\n' >build/release/mini_engine
-  exec chmod +x build/release/mini_engine
+  printf '#!/bin/sh\n' | tee build/release/first_picture >build/release/mini_engine
+  exec chmod +x build/release/first_picture build/release/mini_engine
 fi
 exec "$cmake" "\$@"
 END

@@ -26,7 +26,8 @@ void expectLinks(const spawn::Graph& graph) {
   spawn::Graph linked(std::pmr::new_delete_resource());
   spawn::addRegularPolygons(linked);
   spawn::Tags tags;
-  for (const char* name : {"a", "b"}) spawn::appendGraph(graph, name, linked, tags);
+  spawn::Diagnostics diagnostics;
+  for (const char* name : {"a", "b"}) spawn::appendGraph(graph, name, linked, tags, diagnostics);
   spawn::analyse(linked);
   if (const auto ok = spawn::validate(linked); !ok) ADD_FAILURE() << ok.error().text;
 }

@@ -1,6 +1,7 @@
 // .cga files that derive on the GPU: their operator graphs against the CPU evaluator of .cga files, another
 // implementation of the same language over general meshes. Sets are compared by path keys: each terminal with its own.
 #include "cga_graphs.h"
+#include "spawn/schedule/fields.h"
 #include "spawn_device.h"
 
 namespace gpgp::spawn::cga {
@@ -69,6 +70,62 @@ TEST(CgaGraphs, OperationsAreTheSame) {
     expectSame(text);
 }
 
+/// Heights of hills over x and z from -60 to 300.
+struct Hills {
+  std::vector<float> values;
+  GpgpSpawnField field{};
+  Hills() {
+    for (int z = 0; z < 73; ++z)
+      for (int x = 0; x < 73; ++x)
+        values.push_back(4 + 3 * std::sin(0.31f * static_cast<float>(x)) * std::cos(0.23f * static_cast<float>(z)));
+    field.name = "hills";
+    field.grid = {values.data(), 73, 73, {-60, -60}, {300, 300}};
+  }
+};
+
+TEST(CgaGraphs, FieldsAreTheSame) {
+  const Hills hills;
+  const auto grid = fieldGrid(hills.field, {&hills.field, 1});
+  ASSERT_TRUE(grid);
+  DeriveOptions options;
+  options.keepScopes = true;
+  options.threads = 1;
+  options.fields = {{"hills", *grid, hills.values.data()}};
+  double worst = 0;
+  size_t terminals = 0;
+  for (const char* text : {
+           "Lot --> extrude(max(1, Field(\"hills\"))) comp(f) { side: A | top: B }",
+           "Lot --> split(x) { ~2: split(z) { ~2: Cell }* }*\nCell --> case Field(\"hills\") > 4: extrude(3) High "
+           "else: Low",
+           "Lot --> t(3, 0, 1) case Field(\"hills\", 1, -2) < Field(\"hills\", -1, 2): color(\"#ff0000\") A else: r(0, "
+           "30, 0) B",
+           "Lot --> split(z) { max(1, Field(\"hills\")): A | ~1: extrude(2) comp(f) { front: Face | all: NIL } }\n"
+           "Face --> split(x) { ~1: case Field(\"hills\") > 3.5: Tile else: NIL }*",
+           "high = Field(\"hills\") > 4.5\nLot --> split(x) { ~1: P }*\nP --> case high && scope.sx < 5: A else: B",
+       }) {
+    SCOPED_TRACE(text);
+    const WithGraph made = withGraph(text);
+    ASSERT_TRUE(made.program) << made.messages;
+    ASSERT_FALSE(made.words.empty()) << made.program->graph.why;
+    const auto graph = load(std::as_bytes(std::span(made.words)), std::pmr::new_delete_resource());
+    ASSERT_TRUE(graph);
+    const auto bound = bindFields(*graph, {&hills.field, 1});
+    ASSERT_TRUE(bound) << bound.error().text;
+    for (const uint32_t seed : {5u, 6u, 7u}) {
+      const Lots lots = someLots(seed);
+      Messages messages;
+      const Derivation cpu = derive(*made.program, lots.lots, options, messages);
+      EXPECT_EQ(allOf(messages), "");
+      spawn::DeriveOptions world;
+      world.fields = &*bound;
+      EXPECT_EQ(difference(cpu, spawn::derive(made.words, lots.axioms, world).instances, made.program->graph, worst),
+                "");
+      terminals += cpu.leaves.size();
+    }
+  }
+  EXPECT_GT(terminals, 200u);
+}
+
 TEST(CgaGraphs, TheFirstMisfitIsNamedWithItsPlace) {
   const auto why = [](const std::string& text) {
     const WithGraph made = withGraph(text);
@@ -89,6 +146,12 @@ TEST(CgaGraphs, TheFirstMisfitIsNamedWithItsPlace) {
             "main.cga:1:29 the function or attribute 'split.index'");
   EXPECT_EQ(why("Lot --> setback(1) { all: A | remainder: B }"),
             "main.cga:1:22 a setback whose mitred pieces are used");
+  EXPECT_EQ(why("attr h = Field(\"a\")\nLot --> extrude(max(1, h))"),
+            "main.cga:2:24 'h', a field's value that a shape has to remember,");
+  EXPECT_EQ(why("Lot --> A(Field(\"a\"))\nA(x) --> t(1, 0, 0) case x > 1: B else: C"),
+            "main.cga:2:26 'x', a field's value that a shape has to remember,");
+  EXPECT_EQ(why("Lot --> extrude(max(1, Field(\"my field\")))"),
+            "main.cga:1:24 a field whose name is not known, or is no identifier,");
   EXPECT_EQ(why("Lot --> A(1)\nA(n) --> t(1, 0, 0) A(n + 1)"),
             "main.cga:2:21 a rule that is called with so many different values");
 }

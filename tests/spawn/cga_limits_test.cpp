@@ -20,12 +20,13 @@ TEST(CgaLimits, FacesOfAShapeAreNamedWithRuleOperationAndPlace) {
   // Each turn makes of every face a solid of six.
   const Derived d = run("Lot -->\n  extrude(1) A\nA -->\n  t(0, 1, 0)\n  extrude(0.5) A", {lot(10, 10)}, options);
   says(d, "main.cga:5:3: error: rule 'A', 'extrude': a shape has ");
-  says(d, " faces, more than 1000; --max-faces allows more");
+  says(d, " faces, more than 1000; maxFaces (--max-faces) allows more");
   EXPECT_LT(d.all.work, 1'000'000u);
   options = {};
   options.maxVertices = 500;
   says(run("Lot --> primitiveSphere(64, 64)", {lot(1, 1)}, options),
-       "main.cga:1:9: error: rule 'Lot', 'primitiveSphere': a shape has 4034 vertices, more than 500; --max-vertices");
+       "main.cga:1:9: error: rule 'Lot', 'primitiveSphere': a shape has 4034 vertices, more than 500; maxVertices "
+       "(--max-vertices)");
 }
 
 TEST(CgaLimits, WorkAndMeshesOfAnAxiomAreBounded) {
@@ -33,7 +34,9 @@ TEST(CgaLimits, WorkAndMeshesOfAnAxiomAreBounded) {
   options.maxWork = 3'000'000;
   const Derived d = run("Lot --> offset(-0.01) offset(0.01) Lot", {lot(10, 10)}, options);
   says(d, "main.cga:1:");
-  says(d, ": error: rule 'Lot', 'offset': the geometry of one axiom takes more than 3 million steps; --max-work");
+  says(
+      d,
+      ": error: rule 'Lot', 'offset': the geometry of one axiom takes more than 3 million steps; maxWork (--max-work)");
   EXPECT_LT(d.all.work, 2 * options.maxWork);
   const Derived kept = run("Lot --> B. offset(-0.01) offset(0.01) Lot", {lot(10, 10)}, options); // what came before
   says(kept, "--max-work");
@@ -44,12 +47,12 @@ TEST(CgaLimits, WorkAndMeshesOfAnAxiomAreBounded) {
   const Derived e = run("Lot --> primitiveSphere(64, 64) s('1.01, '1, '1) tileUV(0, 1, 1) Lot", {lot(1, 1)}, options);
   says(e, "main.cga:1:");
   says(e, ": error: rule 'Lot', '");
-  says(e, "': the meshes of one axiom need more than 4 MiB; --max-geometry allows more");
+  says(e, "': the meshes of one axiom need more than 4 MiB; maxGeometryMiB (--max-geometry) allows more");
   // Drawing shares meshes, but not triangles.
   const Derived f = run("Lot --> primitiveSphere(64, 64) split(x) { ~1: A | ~1: A } A --> B B B B B B B B "
                         "B --> C. C. C. C. C. C. C. C.",
                         {lot(1, 1)}, options);
-  says(f, "error: the triangles of one axiom need more than 4 MiB; --max-geometry allows more");
+  says(f, "error: the triangles of one axiom need more than 4 MiB; maxGeometryMiB (--max-geometry) allows more");
   EXPECT_TRUE(run("Lot --> primitiveSphere(64, 64) A. A. A.").messages.empty());
 }
 

@@ -43,6 +43,17 @@ TEST(CgaOperations, SplitAreaGivesPartsOfTheAreasAsked) {
   isSum(repeated, "a", 200);
 }
 
+TEST(CgaOperations, AnAttributeMayTakeItsValueFromAnImport) {
+  // The import's attribute of that name stays its own, or the value would need itself.
+  const Derived d = run("import zone : \"zone.cga\"\nattr height = zone.height\nattr width = 2\n"
+                        "Lot --> report(\"h\", height) report(\"z\", zone.height) report(\"w\", zone.width) X.",
+                        {lot(10, 20)}, {}, {{"zone.cga", "attr height = 7\nattr width = 1\nA --> X."}});
+  EXPECT_EQ(d.messages, "");
+  isSum(d, "h", 7);
+  isSum(d, "z", 7);
+  isSum(d, "w", 2); // the importer's
+}
+
 TEST(CgaOperations, InnerRectangleHasARemainder) {
   const char* text =
       R"(Lot --> innerRectangle(edge) { shape: report("in", geometry.area) A. | remainder: report("out", geometry.area) B. })";
@@ -192,6 +203,114 @@ TEST(CgaOperations, OneMaterialIsOneComponent) {
   EXPECT_EQ(d.messages, "");
   isSum(d, "v", 600);
   EXPECT_EQ(d.rules.at("A"), 1u);
+}
+
+TEST(CgaOperations, WhatIsInsertedIntoARoofsFaceEndsAtItsHips) {
+  const Derived d = run(R"(Lot --> roofHip(45) comp(f) { isTagged("roof.top"): Face | all: NIL }
+      Face --> case geometry.nVertices == 3: s('1, '1, 1) primitiveCube report("v", geometry.volume) A.
+               else: NIL)");
+  EXPECT_EQ(d.messages, "");
+  EXPECT_EQ(d.rules.at("A"), 2u);
+  // Along the slope u and outwards w the face is 10 - 2 max(0, (u - w) / sqrt(2)) wide between the hips' planes.
+  const double l = 5 * std::sqrt(2.0);
+  isSum(d, "v", 2 * (10 * l - std::sqrt(0.5) * (l * l * l - (l - 1) * (l - 1) * (l - 1)) / 3));
+  const Derived off =
+      run(R"(Lot --> roofHip(45) set(trim.vertical, false) comp(f) { isTagged("roof.top"): Face | all: NIL }
+      Face --> case geometry.nVertices == 3: s('1, '1, 1) primitiveCube report("v", geometry.volume) A.
+               else: NIL)");
+  isSum(off, "v", 2 * 10 * l);
+}
+
+TEST(CgaOperations, TrimCutsWhatWasWidened) {
+  const char* text = R"(Lot --> roofHip(45) comp(f) { isTagged("roof.top"): Face | all: NIL }
+      Face --> case geometry.nVertices == 3: extrude(1) s('3, '1, '1) center(x) %TRIM% report("v", geometry.volume) A.
+               else: NIL)";
+  const auto volume = [&](const std::string& trim) {
+    std::string t = text;
+    t.replace(t.find("%TRIM%"), 6, trim);
+    return run(t).sum("v");
+  };
+  const double l = 5 * std::sqrt(2.0);
+  EXPECT_NEAR(volume(""), 2 * 3 * 5 * l, 1e-3);
+  EXPECT_LT(volume("trim()"), 0.5 * volume(""));
+  EXPECT_GT(volume("trim()"), 2 * 5 * l * 0.99);
+}
+
+TEST(CgaOperations, NormalsAreSoftBelowAnAngle) {
+  DeriveOptions options;
+  options.keepTriangles = true;
+  const auto normals = [&](const std::string& operation) {
+    return run("Lot --> primitiveCube() " + operation + " A.", {lot(4, 4)}, options).all.vertices;
+  };
+  for (const Vertex& v : normals("setNormals(soft)"))
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(std::fabs(v.normal[axis]), std::sqrt(1.0 / 3), 1e-5);
+  for (const Vertex& v : normals("softenNormals(89)"))
+    EXPECT_NEAR(std::fabs(v.normal.x) + std::fabs(v.normal.y) + std::fabs(v.normal.z), 1, 1e-5);
+}
+
+TEST(CgaOperations, FootprintsAreUnionsOfShadows) {
+  const std::vector<glm::vec3> l{{0, 0, 0}, {0, 0, 10}, {10, 0, 10}, {10, 0, 6}, {4, 0, 6}, {4, 0, 0}};
+  const char* text = R"(Lot --> extrude(3) HIP footprint() report("a", geometry.area) extrude(1)
+      report("v", geometry.volume) A.)";
+  std::string plain = text;
+  plain.erase(plain.find("HIP"), 3);
+  const Derived d = run(plain, {polygon(l, {6})});
+  EXPECT_EQ(d.messages, "");
+  isSum(d, "a", 64);
+  isSum(d, "v", 64);
+  const Derived ball = run("Lot --> primitiveSphere(32, 16) s(4, 7, 4) footprint() report(\"a\", geometry.area) A.");
+  isSum(ball, "a", 16 * 2 * 2 * std::sin(2 * 3.14159265358979 / 32));
+  const Derived box = run("Lot --> extrude(4) footprint() report(\"a\", geometry.area) A.");
+  isSum(box, "a", 200);
+}
+
+TEST(CgaOperations, ARidgeIsOverTheMiddle) {
+  const char* text =
+      R"(Lot --> %ROOF% report("v", geometry.volume) report("closed", case geometry.isClosedSurface: 1 else: 0)
+      comp(f) { isTagged("roof.top"): T. | isTagged("roof.side"): S. | isTagged("roof.bottom"): B. })";
+  const auto with = [&](const std::string& roof) {
+    std::string t = text;
+    return t.replace(t.find("%ROOF%"), 6, roof);
+  };
+  const Derived d = run(with("roofRidge(byHeight, 4)"));
+  EXPECT_EQ(d.messages, "");
+  isSum(d, "v", 10 * 20 * 4 / 2);
+  isSum(d, "closed", 1);
+  EXPECT_EQ(d.rules.at("T"), 2u);
+  EXPECT_EQ(d.rules.at("S"), 2u);
+  EXPECT_EQ(d.rules.at("B"), 1u);
+  // Of an L whose first edge, which is the ridge's direction, is along z: the integral of min(x, 10 - x) times the
+  // extent along z, 10 below x = 4 and 4 above.
+  const Derived l = run(with("roofRidge(byAngle, 45)"),
+                        {polygon({{0, 0, 0}, {0, 0, 10}, {10, 0, 10}, {10, 0, 6}, {4, 0, 6}, {4, 0, 0}}, {6})});
+  isSum(l, "v", 80 + 18 + 50);
+  isSum(l, "closed", 1);
+}
+
+TEST(CgaOperations, FacesAreModifiedInPlace) {
+  const Derived d = run(R"(Lot --> extrude(2) modify(f) { top: s('0.5, '0.5, '1) A. } report("n", geometry.nFaces)
+      report("a", geometry.area) B.)");
+  EXPECT_EQ(d.messages, "");
+  EXPECT_EQ(d.rules.at("B"), 1u);
+  EXPECT_EQ(d.rules.count("A"), 0u);
+  isSum(d, "n", 6);
+  isSum(d, "a", 200 + 2 * 2 * 30 + 50);
+}
+
+TEST(CgaOperations, ConnectedComponentsAreShapes) {
+  const Derived d = run("Lot --> extrude(3) comp(f) { horizontal =: A. | side =: B. }");
+  EXPECT_EQ(d.rules.at("A"), 2u);
+  EXPECT_EQ(d.rules.at("B"), 1u);
+}
+
+TEST(CgaOperations, MaterialsAreSetAsAWhole) {
+  const Derived d =
+      run(R"(Lot --> setMaterial(["color.r", "0.5"; "color.g", "0"; "colormap", "a.png"; "roughness", "1"])
+      print(material.color.r) print(material.color.g) print(material.colormap) print(material.roughness)
+      print(getMaterial(used, changed)) resetMaterial() print(size(getMaterial(used, changed))) A.)");
+  EXPECT_EQ(d.messages, "");
+  EXPECT_EQ(d.all.prints, (std::vector<std::string>{"0.5", "0", "a.png", "1",
+                                                    "[color.b,1;color.g,0;color.r,0.5;colormap,a.png]", "0"}));
 }
 
 } // namespace

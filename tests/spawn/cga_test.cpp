@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <random>
@@ -31,10 +32,136 @@ TEST(CgaLanguage, ValuesOfExpressions) {
 
 TEST(CgaLanguage, ArraysAreIndexedBySingleValuesRangesAndConditions) {
   EXPECT_EQ(printed(R"(const k = [1, 2, 3, 4.5]
-      table = [[1, 2], [3, 4]]
+      table = [1, 2; 3, 4]
       Lot --> print(k[1]) print(k[1:2]) print(k[-1]) print(k[:1]) print(size(k)) print(k[k .> 2]) print(table[1, 0])
-              print(nRows(table)) print(["a"] + ["b"]) NIL)"),
-            (std::vector<std::string>{"2", "[2,3]", "4.5", "[1,2]", "4", "[3,4.5]", "3", "2", "[a,b]"}));
+              print(nRows(table)) print(["a"] + ["b"]) print(k[2:]) NIL)"),
+            (std::vector<std::string>{"2", "[2,3]", "0", "[1,2]", "4", "[3,4.5]", "3", "2", "[a,b]", "[3,4.5]"}));
+}
+
+// The examples of the reference.
+TEST(CgaLanguage, ArraysHaveRowsAndAreJoinedSideBySideAndBelowEachOther) {
+  EXPECT_EQ(printed(R"(const a = [-1 ; -2]
+      const b = [0:2 ; 3, 3, 3]
+      const c = [a, b ; b, a]
+      const m = [1, 2, 3; 4, 5, 6; 7, 8, 9]
+      const v = [1, 2, 3, 4]
+      fibonacci(n) = case n <= 2: [0:n-1] else: fibonacci([0, 1], n)
+      fibonacci(f, n) = case size(f) == n: f else: fibonacci([f, f[size(f)-2] + f[size(f)-1]], n)
+      Lot --> print(a) print(b) print(c) print(nRows(v)) print(nColumns(v)) print(fibonacci(10)) print([1:2:5])
+              print(v[3:-1:1]) print(v[[0, 1; 2, 3]]) print(m[1, [0, 2]]) print(m[[0, 0, 1], 2]) print(m[0:2, [0, 2]])
+              print(v[v .> 1 .&& v .<= 3]) print(m[[false, true, true], 0]) print(m[[2, 3], -1:1]) print(m[3])
+              print(v[[false, false, true, true, true]]) NIL)"),
+            (std::vector<std::string>{"[-1;-2]", "[0,1,2;3,3,3]", "[-1,0,1,2;-2,3,3,3;0,1,2,-1;3,3,3,-2]", "1", "4",
+                                      "[0,1,1,2,3,5,8,13,21,34]", "[1,3,5]", "[4,3,2]", "[1,2;3,4]", "[4,6]", "[3;3;6]",
+                                      "[1,3;4,6;7,9]", "[2,3]", "[4;7]", "[0,7,8;0,0,0]", "4", "[3,4,0]"}));
+}
+
+TEST(CgaLanguage, ArraysAreComparedSortedAndSetElementByElement) {
+  EXPECT_EQ(printed(R"(const s = [1:7]
+      const z = [0, 0, 0, 0, 0, 0]
+      const t = [4, 0, 1; 2, 1, 9; 1, 3, 0; 2, 1, 0]
+      Lot --> print([1, 2] == [1, 2]) print([1, 2] == [1; 2]) print(.![true, false]) print([1, 2] .+ [3, 4])
+              print([1, 2] .* 3) print(.-[1, 2]) print(["a", "b"] .+ 1) print(setElems(z, 2, 1))
+              print(setElems(z, [1:4], 1)) print(setElems(z, [5, 1, 3], [1:3])) print(setElems(s, s .> 4, [3, 2, 1]))
+              print(setElems([0, 0; 0, 0], [1, 0], [1, 0], [1, 2; 3, 4])) print(setElems([1], 3, 9))
+              print(sortIndices([2, 1, 3, 3, 1])) print(sortIndices(["e", "c", "d"; "b", "a", "c"]))
+              print(sortRowIndices(t)) print(t[sortRowIndices(t), 0:nColumns(t)-1]) print(transpose([1, 2; 3, 4]))
+              print(findFirst(["x", "y"], "y")) print(sum([1:4])) NIL)"),
+            (std::vector<std::string>{"true",
+                                      "false",
+                                      "[false,true]",
+                                      "[4,6]",
+                                      "[3,6]",
+                                      "[-1,-2]",
+                                      "[a1,b1]",
+                                      "[0,0,1,0,0,0]",
+                                      "[0,1,1,1,1,0]",
+                                      "[0,2,0,3,0,1]",
+                                      "[1,2,3,4,3,2,1]",
+                                      "[4,3;2,1]",
+                                      "[1,0,0,9]",
+                                      "[1,4,0,2,3]",
+                                      "[1,2,0;4,3,5]",
+                                      "[2,3,1,0]",
+                                      "[1,3,0;2,1,0;2,1,9;4,0,1]",
+                                      "[1,3;2,4]",
+                                      "1",
+                                      "10"}));
+}
+
+TEST(CgaLanguage, ComponentsHaveValues) {
+  EXPECT_EQ(printed(R"(length = scope.sx
+      largest(areas) = areas[sortIndices(areas)[size(areas) - 1]]
+      attr perimeter = sum(comp(fe) { all: scope.sx })
+      twice(n) = [n, n]
+      Lot --> print(comp(v) { all: comp.index }) print(comp(fe) { front: length | back: 2 * length })
+              print(perimeter) extrude(3) print(comp(f) { side: "s" | top: "t" }) print(comp(f) { side = geometry.area })
+              print(largest(comp(f) { all: geometry.area })) print(twice(sum(comp(f) { side: geometry.area }))[1]) NIL)"),
+            (std::vector<std::string>{"[0,1,2,3]", "[10,0,20,0]", "60", "[,s,s,s,s,t]", "[0,180,180,180,180,0]", "200",
+                                      "180"}));
+}
+
+TEST(CgaLanguage, NoNumberIsToldFromNumbers) {
+  EXPECT_EQ(printed(R"(const NaN = ln(-1)
+      attr height = NaN
+      const NULL = "\ue000"
+      Lot --> print(isnan(height)) print(isNull(height)) print(isnan(ln(1))) print(isNull(NULL)) print(isNull("x")) NIL)"),
+            (std::vector<std::string>{"true", "true", "false", "true", "false"}));
+}
+
+TEST(CgaLanguage, StringsMayGoOnInTheNextLineAndLeavesMayHaveCommentsBehindThem) {
+  EXPECT_EQ(printed("@Description(\"two\nlines\")\nattr x = 1\nLot --> print(x) A.//done\n"),
+            (std::vector<std::string>{"1"}));
+}
+
+TEST(CgaFiles, AreFoundAnywhereBelowAndWhateverTheirCapitals) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / ("gpgp_cga_files_" + std::to_string(std::random_device()()));
+  fs::create_directories(folder / "assets" / "Deep" / "textures");
+  const unsigned char png[24] = {0x89, 'P', 'N', 'G', 13, 10, 26, 10, 0, 0, 0, 13,
+                                 'I',  'H', 'D', 'R', 0,  0,  1,  2,  0, 0, 0, 7};
+  for (const char* name : {"assets/Deep/textures/a.png", "assets/Deep/textures/b.png", "assets/Deep/c.png"})
+    std::ofstream(folder / name, std::ios::binary).write(reinterpret_cast<const char*>(png), sizeof png);
+  Messages messages;
+  CompileOptions options;
+  options.path = (folder / "main.cga").string();
+  options.read = filesOnDisk();
+  const auto program = compile(R"(Lot --> print(fileSearch("*textures/*.png")) print(size(filesSearch("*.png")))
+      print(fileExists("ASSETS/deep/Textures/A.png")) print(fileExists("assets/Deep/d.png"))
+      print(imageInfo("assets/Deep/c.png", sx)) print(imageInfo("assets/Deep/c.png", sy)) NIL)",
+                               options, messages);
+  ASSERT_TRUE(program) << allOf(messages);
+  const std::vector<Axiom> axioms{lot(1, 1)};
+  const Derivation d = derive(*program, axioms, {}, messages);
+  fs::remove_all(folder);
+  EXPECT_EQ(allOf(messages), "");
+  EXPECT_EQ(d.prints, (std::vector<std::string>{"assets/Deep/textures/a.png;assets/Deep/textures/b.png;", "3", "true",
+                                                "false", "258", "7"}));
+}
+
+TEST(CgaModules, StylesExtendTheDefaultAndPathsHaveAnySlash) {
+  const std::map<std::string, std::string> files = {
+      {"lib/a.cga", "attr x = 1\nattr y = 2\nShow --> print(x + y) NIL\nstyle Alt extends Default\nattr x = 10\n"}};
+  const Derived d = run("import a(Alt) : \"lib\\a.cga\"\nLot --> a.Show", {lot(1, 1)}, {}, files);
+  EXPECT_EQ(d.messages, "");
+  EXPECT_EQ(d.all.prints, (std::vector<std::string>{"12"}));
+}
+
+TEST(CgaModules, AttributesOfTheImporterAreThoseOfTheImport) {
+  const std::map<std::string, std::string> files = {{"st.cga", "attr height = 3\nattr width = 4\n"
+                                                               "Show --> print(height + \" \" + width) NIL"}};
+  const auto shows = [&](const std::string& import) {
+    return run("attr height = 7\n" + import + "\nLot --> st.Show", {lot(10, 10)}, {}, files).all.prints;
+  };
+  using Texts = std::vector<std::string>;
+  EXPECT_EQ(shows("import st : \"st.cga\""), Texts{"7 4"});
+  EXPECT_EQ(shows("import st : \"st.cga\" (height)"), Texts{"3 4"});
+  EXPECT_EQ(shows("import st : \"st.cga\" ()"), Texts{"3 4"});
+  EXPECT_EQ(shows("import st : \"st.cga\" (height = 5, width = height * 2)"), Texts{"5 14"});
+  EXPECT_EQ(shows("import st : \"st.cga\" (width)"), Texts{"7 4"});
+  const Derived set =
+      run("attr height = 7\nimport st : \"st.cga\"\nLot --> set(height, 9) st.Show", {lot(1, 1)}, {}, files);
+  EXPECT_EQ(set.all.prints, Texts{"9 4"});
 }
 
 TEST(CgaLanguage, FunctionsLocalsAndRecursion) {
@@ -320,14 +447,21 @@ TEST(CgaMessages, ErrorsHavePlacesAndSuggestions) {
 }
 
 TEST(CgaMessages, WhatIsNotSupportedIsNamedOnceAndTheRestDerives) {
-  const Derived d = run("Lot --> modify { A } softenNormals(3) softenNormals(4) extrude(2) Unknown\n");
-  EXPECT_EQ(d.all.leaves.size(), 1u);
-  EXPECT_NE(
-      d.messages.find("main.cga:1:22: warning: the operation 'softenNormals' is not supported, and does nothing (and "
-                      "1 more of these)"),
-      std::string::npos)
+  const Derived d = run("Lot --> pointCloud('0.5) { all : A | 2 : B C } splitPerimeter(1) { ~2 : A } newFunction(3) "
+                        "insert(3) insert(4) extrude(2 + rando(7)) Unknown\n");
+  EXPECT_EQ(d.all.leaves.size(), 2u);
+  EXPECT_NE(d.messages.find("main.cga:1:92: warning: the operation 'insert' is not supported, and does nothing (and "
+                            "1 more of these)"),
+            std::string::npos)
       << d.messages;
-  EXPECT_NE(d.messages.find("'modify' is not supported"), std::string::npos) << d.messages;
+  EXPECT_NE(d.messages.find("'pointCloud' is not supported"), std::string::npos) << d.messages;
+  EXPECT_NE(d.messages.find("main.cga:1:48: warning: there is no operation 'splitPerimeter'; it and its block do "
+                            "nothing"),
+            std::string::npos)
+      << d.messages;
+  EXPECT_NE(d.messages.find("warning: there is no function 'rando', and it is 0; did you mean 'rand'?"),
+            std::string::npos)
+      << d.messages;
 }
 
 TEST(CgaMessages, LimitsEndInErrorsThatNameThem) {
@@ -337,7 +471,7 @@ TEST(CgaMessages, LimitsEndInErrorsThatNameThem) {
     const Derived d = run(text, {lot(10, 10)}, options);
     EXPECT_NE(d.messages.find(what), std::string::npos) << d.messages;
   };
-  says("Lot --> Lot", "2000 rules behind the axiom; --max-depth allows more");
+  says("Lot --> Lot", "2000 rules behind the axiom; maxDepth (--max-depth) allows more");
   says("Lot --> split(x) { ~0.0005: A. }*", "more than 10000 shapes");
   says("f(x) = f(x + 1)\nLot --> t(f(1), 0, 0)", "functions call each other deeper than 512");
   says("Lot --> split(x) { ~0.000005: A. }*", "a split has more than 1000000 parts");

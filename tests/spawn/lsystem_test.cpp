@@ -278,6 +278,108 @@ TEST(Lsystem, FunctionsAreThoseOfTheCpu) {
   EXPECT_EQ(shader::arcTangentDegrees(1, 0), 90);
 }
 
+// ------------------------------------------------------------ files of plant modellers
+
+TEST(LsystemOfPlantModellers, HeadingsMacrosAndCommentsAreTheirs) {
+  const Table t = tableOf(R"(/* a bush */
+#define STEPS 2   /* as many */
+#define ANGLE 25.7
+#define Apex X
+#define grown(n, most) \
+  ((n) >= (most))
+Lsystem: 1
+derivation length: STEPS
+Consider: XF[]
+Axiom: Apex(0)/* the beginning */
+
+p1: Apex(n) : !grown(n, 1)
+      --> F[+(ANGLE)Apex(n+1)]//
+          F Apex(n+1)
+p2: Apex(n) : grown(n, 1) --> *
+endlsystem
+)");
+  EXPECT_EQ(stringOf(t, 1), "F[+(25.7)X(1)]//FX(1)");
+  EXPECT_EQ(stringOf(t, 2), "F[+(25.7)]//F");
+}
+
+TEST(LsystemOfPlantModellers, OneTextMeansWhatOursMeans) { // ABOP figure 1.24 b
+  const Table own = tableOf("axiom: F\nangle: 20\niterations: 4\nF --> F[+F]F[-F][F]\n");
+  for (const char* text : {"lsystem: 1\nderivation length: 4\nangle: 20\naxiom: F\nF --> F[+F]F[-F][F]\nendlsystem\n",
+                           "n=4; delta=20; stemsize=0.1\naxiom: F\np1: F -> F[+F]F[-F][F]\nview = {auto: 'z'}\n"})
+    EXPECT_EQ(stringOf(tableOf(text), 4), stringOf(own, 4));
+}
+
+TEST(LsystemOfPlantModellers, CodeStandsBeforeAndBehindConditions) {
+  const Table t = tableOf(R"(lsystem: 1
+derivation length: 4
+start: { limit = 3; }
+axiom: A(0)
+A(t) : {u = t + 1;} u <= limit { x = t * t; if (x > 2) { y = x; x += 10; } else y = -1; } --> B(x, y) A(u)
+A(t) : * {u = t; z = u + 1; u = 7;} --> C(t, u, z)
+endlsystem
+)");
+  EXPECT_EQ(stringOf(t, 3), "B(0,-1)B(1,-1)B(14,4)A(3)");
+  EXPECT_EQ(stringOf(t, 4), "B(0,-1)B(1,-1)B(14,4)C(3,7,4)");
+}
+
+TEST(LsystemOfPlantModellers, RandomNumbersWithANameAreDrawnOnce) {
+  const std::string s = stringOf(tableOf("lsystem: 1\nderivation length: 1\naxiom: A\n"
+                                         "A : * { x = ran(1); y = x; } --> B(x, y, ran(1))\nendlsystem\n"),
+                                 1);
+  float x = 0, y = 0, z = 0;
+  ASSERT_EQ(std::sscanf(s.c_str(), "B(%f,%f,%f)", &x, &y, &z), 3) << s;
+  EXPECT_EQ(x, y);
+  EXPECT_NE(x, z);
+}
+
+TEST(LsystemOfPlantModellers, SectionsHaveDepths) {
+  const Table t = tableOf(R"(Lsystem: 1
+derivation length: 1
+Axiom: A(3)
+A(n) --> B(n)
+decomposition
+maximum depth: 5
+B(n) : n > 0 --> C B(n - 1)
+homomorphism
+maximum depth: 2
+C --> D
+D --> F
+endlsystem
+)");
+  EXPECT_EQ(stringOf(t, 1), "FFFB(0)"); // as it is drawn
+  const auto axioms = axiomsOf(1);
+  EXPECT_EQ(draw(t, derive(t, axioms, 1).string, axioms).instances.size(), 3u);
+}
+
+TEST(LsystemOfPlantModellers, CirclesSpheresAndColoursAreDrawn) {
+  const Drawn d =
+      drawnOf("lsystem: 1\nderivation length: 0\naxiom: ;(5)F(1)@O(0.5)[+@c(0.2)]#(0.3)F(2)@v\nendlsystem\n", 0);
+  EXPECT_EQ(d.instances.size(), 4u);
+}
+
+TEST(LsystemOfPlantModellers, WhatIsNotSupportedIsNamedWithItsPlaceAllAtOnce) {
+  Diagnostics diagnostics;
+  EXPECT_FALSE(compile(R"(#include "functions.h"
+lsystem: 1
+derivation length: 2
+define: { array g[2] = {1, 2}; }
+StartEach: { t = t + 1; }
+axiom: A(1) ?P(0,0) @M(1,2,3)
+A(n) : * { while (n > 1) n = n - 1; } --> A(n)
+endlsystem
+lsystem: 2
+axiom: B
+endlsystem
+)",
+                       {}, diagnostics));
+  std::string all;
+  for (const auto& d : diagnostics.sorted()) all += format(d, "x").substr(2) + "\n";
+  for (const char* expected :
+       {"1:1: warning: 'functions.h' of an #include cannot be read", "6:13: warning: there are no queries",
+        "6:21: warning: the turtle command '@M' is not supported", "7:12: error: the number of turns of a loop has to"})
+    EXPECT_NE(all.find(expected), std::string::npos) << expected << "\n" << all;
+}
+
 // ------------------------------------------------------------ errors
 
 TEST(Lsystem, ErrorsSayWhereAndWhat) {
@@ -295,7 +397,7 @@ TEST(Lsystem, ErrorsSayWhereAndWhat) {
       {"axiom: F\n[ --> F\n", "2:1: error: '[' cannot be rewritten"},
       {"axiom: F\nF(x,x) --> F\n", "2:5: error: the parameter 'x' stands twice"},
       {"axiom: {F{F}}\n", "1:10: error: a polygon within a polygon is not supported"},
-      {"axiom: @Gx\n", "error: after '@', there are only @Gs, @Gc and @Ge"},
+      {"axiom: @Gx\n", "error: there is no command '@Gx'; after '@', there are Gs"},
       {"axiom: F\nignore: +\nF > + --> G\n", "3:5: error: contexts do not see '+', so this one never holds"},
       {"axiom: F\niterations: 1\nA --> F\n", "3:1: warning: the production never applies"},
       {"axiom: F\niterations: 1\nF --> FF : 0.3\nF --> F : 0.3\n",

@@ -1,10 +1,10 @@
 // What is measured of axioms: on the CPU against closed forms, and read back from the GPU against the CPU.
-#include "../device_test.h"
 #include "grammars.h"
 #include "host/memory.h"
 #include "random_grammar.h"
 #include "spawn/evaluator/evaluator.h"
 #include "spawn/schedule/measuring.h"
+#include "spawner_test.h"
 
 #include <gpgp/evaluator.hpp>
 
@@ -172,7 +172,7 @@ TEST(MeasureTest, WhatIsWrongIsSaid) {
 
 // ---------------------------------------------------------------- on the device
 
-struct MeasuresTest : DeviceTest {
+struct MeasuresTest : SpawnerTest {
   GpgpSpawnerCreateInfo budgets() {
     GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
     info.base.queueFamily = device.graphics().family;
@@ -182,25 +182,9 @@ struct MeasuresTest : DeviceTest {
     info.maxHostAxioms = 64;
     return info;
   }
-  GpgpRecorder makeSpawner(const GpgpSpawnerCreateInfo& info) {
-    const GpgpRecorder spawner = recorder(gpgpCreateSpawner, info);
-    advance();
-    for (GpgpSpawnReport old = GPGP_SPAWN_REPORT_INIT; gpgpGetSpawnReport(spawner, &old) == GPGP_SUCCESS;) {
-    } // of other tests
-    return spawner;
-  }
   GpgpAsset load(GpgpRecorder spawner, const std::string& text, bool kernel = false) {
     const std::string baked = bakedFile({"grammar.pga", text}, kernel ? GPGP_COMPILE_KERNEL : 0).text;
-    GpgpGrammarCreateInfo info = GPGP_GRAMMAR_CREATE_INFO_INIT;
-    info.data = baked.data();
-    info.size = baked.size();
-    GpgpAsset grammar = nullptr;
-    EXPECT_EQ(gpgpCreateGrammar(context, &info, &grammar), GPGP_SUCCESS) << lastMessage();
-    EXPECT_EQ(gpgpPrewarmGrammar(spawner, grammar), GPGP_SUCCESS) << lastMessage();
-    const GpgpFrame f = advance();
-    device.submitAndWait(
-        [&](VkCommandBuffer cmd) { EXPECT_EQ(gpgpRecordUpload(context, cmd, &f, 0, nullptr), GPGP_SUCCESS); });
-    return grammar;
+    return SpawnerTest::load(spawner, baked.data(), baked.size());
   }
   GpgpSpawnReport derive(GpgpRecorder spawner, const GpgpSpawnInfo& info) {
     const GpgpFrame f = advance();
@@ -304,7 +288,7 @@ TEST_F(MeasuresTest, ReadBackEqualsTheCpuInEveryKindOfRecording) {
         create.maxColliders = flags ? 0 : 4096; // with the other tests' pipelines
         create.flags = flags & ~(GpgpSpawnerFlags(1) << 31);
         if (vertices) create.vertices = &layout;
-        const GpgpRecorder spawner = makeSpawner(create);
+        const GpgpRecorder spawner = spawnerOf(create);
         const GpgpAsset grammar = load(spawner, kTown, kernel);
         GpgpSpawnInfo info = infoOf(grammar, axioms, asked.info);
         GpgpVertexOutput output{};
@@ -329,7 +313,7 @@ TEST_F(MeasuresTest, ReadBackEqualsTheCpuInEveryKindOfRecording) {
 TEST_F(MeasuresTest, RandomGrammars) {
   GpgpSpawnerCreateInfo create = budgets();
   create.maxColliders = 4096;
-  const GpgpRecorder spawner = makeSpawner(create);
+  const GpgpRecorder spawner = spawnerOf(create);
   const Asked asked(20);
   uint32_t tried = 0, matching = 0;
   for (uint32_t seed = 0; seed < 60; ++seed) {
@@ -354,7 +338,7 @@ TEST_F(MeasuresTest, RandomGrammars) {
 TEST_F(MeasuresTest, EachRecordingInFlightHasItsOwn) {
   GpgpSpawnerCreateInfo create = budgets();
   create.maxColliders = 4096;
-  const GpgpRecorder spawner = makeSpawner(create);
+  const GpgpRecorder spawner = spawnerOf(create);
   const GpgpAsset grammar = load(spawner, kTown);
   const Asked asked(24);
   std::vector<std::vector<GpgpAxiom>> lists;
@@ -414,7 +398,7 @@ TEST_F(MeasuresTest, BudgetsThatAreTooSmallAreSaid) {
   create.maxTerminals = 50;
   create.maxMeasuredAxioms = 40;
   create.maxOccupancyWords = 2 * 12 * 8;
-  const GpgpRecorder spawner = makeSpawner(create);
+  const GpgpRecorder spawner = spawnerOf(create);
   const GpgpAsset grammar = load(spawner, kTown);
   const Asked asked(24);
   const auto axioms = someAxioms(40, 3);

@@ -262,7 +262,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"0 IfSizeLess(V,1) { / -> Discard | / -> Discard }",
              {"3:14: error: expected an axis: X, Y or Z, found 'V'"}},
         Case{"0 Extrude(1) { 1 -> 1 }\n1 Extrude(1) }\n2 R\n", // one error a statement, then it goes on
-             {"4:14: error: expected a node's number, axiom, terminal, polygon, rule or group, found '}'",
+             {"4:14: error: expected a node's number, axiom, terminal, field, polygon, rule or group, found '}'",
               "5:3: error: there is no operator or terminal 'R'"}},
         Case{"0 Extrude(1)\n", {"error: node 0 (Extrude): wrong number of successors"}},
         Case{"0 T\naxiom Box -> 0\n", {}}, Case{"0 T\nrule A(1) -> 0\n", {"4:8: error: there is no axiom '1'"}},

@@ -65,6 +65,12 @@ private:
       return gpgpAddExpression(builder_, spawn::binaryOf(e.op).kind, left, value(e.arguments.at(1)));
     }
     if (e.name == "Exp") return value(e.arguments.at(0));
+    if (e.name == GPGP_FIELD_SPELLING) {
+      const bool atCentre = e.arguments.size() == 1;
+      const GpgpGrammarValue x = atCentre ? GpgpGrammarValue GPGP_GRAMMAR_NUMBER(0) : value(e.arguments.at(1));
+      const GpgpGrammarValue z = atCentre ? x : value(e.arguments.at(2));
+      return gpgpAddField(builder_, e.arguments.at(0).name.c_str(), x, z);
+    }
     for (const spawn::Binary& binary : spawn::kBinaries)
       if (!binary.precedence && e.name == binary.spelling) {
         const GpgpGrammarValue left = value(e.arguments.at(0));

@@ -13,7 +13,7 @@
 namespace {
 
 GpgpScatterInfo infoOf(float distance, float minX, float minZ, float maxX, float maxZ, uint32_t seed = 1) {
-  GpgpScatterInfo info{};
+  GpgpScatterInfo info = GPGP_SCATTER_INFO_INIT;
   for (const int i : {0, 5, 10}) info.base.transform[i] = 1;
   for (float& extent : info.base.size) extent = 2;
   info.distance = distance;
@@ -191,7 +191,10 @@ TEST(ScatterTest, WhatIsWrongIsRefusedAndShortListsAreSaid) {
         infoOf(1, 0, 0, 2049, 1), infoOf(1, 65537, 0, 65538, 1)})
     EXPECT_TRUE(refused(wrong));
   EXPECT_EQ(gpgpScatterAxioms(nullptr, &count, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
+  info = infoOf(1, 0, 0, 10, 10);
   EXPECT_EQ(gpgpScatterAxioms(&info, nullptr, nullptr), GPGP_ERROR_INVALID_ARGUMENT);
+  info.pNext = &count;
+  EXPECT_EQ(gpgpScatterAxioms(&info, &count, nullptr), GPGP_ERROR_INVALID_STRUCT);
 }
 
 } // namespace

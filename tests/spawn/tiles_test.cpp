@@ -1,11 +1,11 @@
 // Tiles through the C functions: whatever order they come, go and move in, each holds what its axioms become, and
 // nothing of another is touched.
-#include "../device_test.h"
 #include "grammars.h"
 #include "host/files.h"
 #include "host/memory.h"
 #include "spawn/evaluator/evaluator.h"
 #include "spawn/tiles/tile_set.h"
+#include "spawner_test.h"
 
 #include <gpgp/tiles.hpp>
 
@@ -17,6 +17,7 @@
 #include <cstring>
 #include <map>
 #include <random>
+#include <set>
 
 namespace {
 using namespace gpgp;
@@ -100,7 +101,7 @@ struct World {
   gpgp::TileSet set;
 };
 
-struct TilesTest : DeviceTest {
+struct TilesTest : SpawnerTest {
   static constexpr uint32_t kPoison = 0xbaadf00d;
 
   GpgpRecorder makeSpawner(GpgpSpawnerFlags flags = 0, const GpgpVertexLayout* layout = nullptr) {
@@ -110,11 +111,7 @@ struct TilesTest : DeviceTest {
     info.maxHostAxioms = 64;
     info.flags = flags;
     info.vertices = layout;
-    const GpgpRecorder spawner = recorder(gpgpCreateSpawner, info);
-    advance();
-    for (GpgpSpawnReport old = GPGP_SPAWN_REPORT_INIT; gpgpGetSpawnReport(spawner, &old) == GPGP_SUCCESS;) {
-    } // of other tests
-    return spawner;
+    return spawnerOf(info);
   }
   World makeWorld(const char* text, uint32_t bytes, uint32_t maxTiles, GpgpRecorder spawner, bool vertices = false,
                   VkIndexType indexType = VK_INDEX_TYPE_UINT32) {
@@ -200,6 +197,105 @@ bool same(std::vector<GpgpInstance> a, std::vector<GpgpInstance> b) {
   sort(a);
   sort(b);
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
+}
+
+// Houses register, trees ask: of the neighbours' houses, too, which stand as far as beyond the border.
+const char* const kYards = R"(axiom Box Lot;
+terminal House (1, 0);
+terminal Tree (1, 1);
+Lot = Replicate() {
+  Translate(Rand(-8, 8), 0, Rand(-8, 8)) Scale(Rand(4, 12), -1, Rand(4, 12)) Collider(1) House |
+  Repeat(X, 3, ADJUST_TO_FILL) Repeat(Z, 3, ADJUST_TO_FILL) Scale(1.5, -1, 1.5) IfCollides(1) { Discard() | Tree }
+};
+)";
+
+TEST_F(TilesTest, WithTheirNeighboursAsContextTheyAreTheWorldDerivedWhole) {
+  constexpr int kSide = 6;
+  constexpr uint32_t kTiles = kSide * kSide;
+  const auto lot = [](int x, int z) {
+    GpgpAxiom axiom = spawn::makeAxiom(16, 6, 16, uint32_t(1000 + 37 * x + 411 * z), uint32_t(z * kSide + x));
+    axiom.transform[3] = 16.0f * float(x);
+    axiom.transform[11] = 16.0f * float(z);
+    return axiom;
+  };
+  GpgpSpawnerCreateInfo create = GPGP_SPAWNER_CREATE_INFO_INIT;
+  create.base.queueFamily = device.graphics().family;
+  create.maxShapes = create.maxTerminals = 16384;
+  create.maxHostAxioms = 16;
+  create.maxColliders = 64;
+  const GpgpRecorder spawner = recorder(gpgpCreateSpawner, create);
+  advance();
+  for (GpgpSpawnReport old = GPGP_SPAWN_REPORT_INIT; gpgpGetSpawnReport(spawner, &old) == GPGP_SUCCESS;) {
+  } // of other tests
+  const auto words = bake(kYards);
+  std::vector<GpgpAxiom> all;
+  for (int z = 0; z < kSide; ++z)
+    for (int x = 0; x < kSide; ++x) all.push_back(lot(x, z));
+  const std::vector<GpgpInstance> whole = spawn::derive(words, all).instances;
+  size_t apart = 0;
+  for (const GpgpAxiom& axiom : all) apart += spawn::derive(words, std::span(&axiom, 1)).instances.size();
+  EXPECT_GT(apart, whole.size() + 50); // without their neighbours there are more trees
+
+  World world = makeWorld(kYards, 96 * 8000, kTiles, spawner);
+  std::vector<uint32_t> order(kTiles);
+  for (uint32_t t = 0; t < kTiles; ++t) order[t] = t;
+  std::mt19937 random(5);
+  std::shuffle(order.begin(), order.end(), random);
+  std::map<uint32_t, GpgpTile> tiles;
+  uint64_t terminals = 0;
+  uint32_t hash[2] = {};
+  for (const uint32_t t : order) {
+    const int x = int(t % kSide), z = int(t / kSide);
+    std::vector<GpgpAxiom> axioms{lot(x, z)};
+    for (int dz = -1; dz <= 1; ++dz)
+      for (int dx = -1; dx <= 1; ++dx)
+        if ((dx || dz) && x + dx >= 0 && x + dx < kSide && z + dz >= 0 && z + dz < kSide)
+          axioms.push_back(lot(x + dx, z + dz));
+    auto tile = init<GpgpTileInfo>();
+    tile.hostAxioms = axioms.data();
+    tile.axiomCount = uint32_t(axioms.size());
+    tile.contextCount = tile.axiomCount - 1;
+    tile.capacity = 200;
+    const GpgpFrame frame = advance();
+    device.submitAndWait([&](VkCommandBuffer cmd) {
+      ASSERT_EQ(world.set.record(cmd, frame, tile, tiles[t]), GPGP_SUCCESS) << lastMessage();
+    });
+    advance();
+    GpgpSpawnReport report = GPGP_SPAWN_REPORT_INIT;
+    ASSERT_EQ(gpgpGetSpawnReport(spawner, &report), GPGP_SUCCESS);
+    ASSERT_EQ(report.base.status, GPGP_SUCCESS);
+    EXPECT_EQ(report.colliders, axioms.size());
+    terminals += report.terminals;
+    for (int k = 0; k < 2; ++k) hash[k] += report.keyHash[k];
+  }
+  Read read{this->read(world.things), this->read(world.draws)};
+  std::vector<GpgpInstance> found;
+  for (const auto& [t, tile] : tiles) {
+    const auto part = drawn(world, read, tile);
+    for (const GpgpInstance& instance : part) EXPECT_EQ(instance.axiomId, t);
+    found.insert(found.end(), part.begin(), part.end());
+  }
+  const auto keys = [](const std::vector<GpgpInstance>& instances) {
+    std::multiset<std::array<uint32_t, 4>> set;
+    for (const GpgpInstance& i : instances) set.insert({i.axiomId, i.key[0], i.key[1], i.terminal});
+    return set;
+  };
+  EXPECT_EQ(terminals, whole.size());
+  EXPECT_EQ(found.size(), whole.size());
+  EXPECT_EQ(keys(found), keys(whole));
+
+  // A tile of neighbours alone is none; a grammar without colliders derives no context at all.
+  auto tile = init<GpgpTileInfo>();
+  tile.hostAxioms = all.data();
+  tile.axiomCount = tile.contextCount = 2;
+  tile.capacity = 10;
+  GpgpTile made = 0;
+  const GpgpFrame frame = advance();
+  device.submitAndWait([&](VkCommandBuffer cmd) {
+    EXPECT_EQ(world.set.record(cmd, frame, tile, made), GPGP_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(lastMessage().find("contextCount is 2"), std::string::npos) << lastMessage();
+  });
+  destroy(world);
 }
 
 TEST_F(TilesTest, InAnyOrderTheyAreTheWorldDerivedWhole) {

@@ -1,11 +1,15 @@
 // What a world needs of a derivation: rules that ask the camera, on the device and on the CPU, and axioms that are
 // derived anew in the place of others.
-#include "../device_test.h"
 #include "grammars.h"
+#include "host/kernel.h"
 #include "host/memory.h"
 #include "random_grammar.h"
+#include "shaders/axioms_between.spv.h"
 #include "spawn/evaluator/evaluator.h"
 #include "spawn/schedule/camera.h"
+#include "spawner_test.h"
+
+#include "gpgp/shaders/axioms.h"
 
 #include <gpgp/evaluator.hpp>
 #include <gpgp/tiles.hpp>
@@ -183,6 +187,25 @@ TEST(CameraTest, NothingInSightIsLost) {
   EXPECT_LT(derived, 30 * finest.terminals / 2);
 }
 
+TEST(CameraTest, WhatTheEngineCallsHiddenIsOutOfView) {
+  const auto words = bake(textOf(GPGP_SAMPLE_GRAMMARS "/../world/wood.pga"));
+  std::vector<GpgpAxiom> axioms;
+  for (uint32_t i = 0; i < 6; ++i) axioms.push_back(spawn::makeAxiom(7, 10, 7, 3 + i, i));
+  const GpgpSpawnCamera camera = cameraAt({0, 2, 30}, {0, 0, 0});
+  for (const GpgpSpawnCamera* from : {static_cast<const GpgpSpawnCamera*>(nullptr), &camera}) {
+    for (GpgpAxiom& axiom : axioms) axiom.hidden = 0;
+    const auto all = seenFrom(words, axioms, from);
+    axioms[1].hidden = axioms[4].hidden = 1;
+    const auto some = seenFrom(words, axioms, from);
+    std::vector<GpgpInstance> expected;
+    for (const GpgpInstance& i : all.instances)
+      if (i.axiomId != 1 && i.axiomId != 4) expected.push_back(i);
+    ASSERT_LT(expected.size(), all.instances.size());
+    ASSERT_EQ(some.instances.size(), expected.size());
+    EXPECT_EQ(std::memcmp(some.instances.data(), expected.data(), expected.size() * sizeof expected[0]), 0);
+  }
+}
+
 TEST(CameraTest, LessIsDerivedOfWhatIsSmallAndSharesOfLevelsAddUp) {
   const auto words = bake(textOf(GPGP_SAMPLE_GRAMMARS "/../world/wood.pga"));
   std::vector<GpgpAxiom> axioms{spawn::makeAxiom(7, 10, 7, 3, 1)};
@@ -210,33 +233,85 @@ TEST(CameraTest, LessIsDerivedOfWhatIsSmallAndSharesOfLevelsAddUp) {
   EXPECT_EQ(fewest, 1u);
 }
 
+// ---------------------------------------------------------------- context
+
+TEST(ContextTest, PartsWithTheirNeighboursAreTheWholeOnTheCpu) {
+  const std::string text = R"(axiom Box Lot;
+terminal House (1, 0);
+terminal Tree (1, 1);
+Lot = Replicate() {
+  Translate(Rand(-8, 8), 0, 0) Scale(Rand(4, 12), -1, Rand(4, 12)) Collider(1) House |
+  Repeat(X, 3, ADJUST_TO_FILL) Scale(1.5, -1, 1.5) IfCollides(1) { Discard() | Tree }
+};
+)";
+  constexpr uint32_t kLots = 40;
+  std::vector<GpgpAxiom> all;
+  for (uint32_t i = 0; i < kLots; ++i) {
+    all.push_back(spawn::makeAxiom(16, 6, 16, 77 + i, i));
+    all.back().transform[3] = 16.0f * float(i);
+  }
+  auto source = init<GpgpGrammarSource>();
+  source.name = "row.pga";
+  source.text = text.data();
+  source.size = text.size();
+  auto info = init<GpgpEvaluatorCreateInfo>();
+  info.sources = &source;
+  info.sourceCount = 1;
+  const auto evaluator = Evaluator::create(info);
+  ASSERT_TRUE(evaluator);
+  auto evaluation = evaluator->evaluation();
+  const auto derive = [&](const std::vector<GpgpAxiom>& axioms, uint32_t context) {
+    auto what = init<GpgpEvaluationInfo>();
+    what.axioms = axioms.data();
+    what.axiomCount = uint32_t(axioms.size());
+    what.contextCount = context;
+    EXPECT_EQ(evaluation->derive(what), GPGP_SUCCESS);
+    return *evaluation->result();
+  };
+  const GpgpEvaluationResult whole = derive(all, 0);
+  const uint64_t terminals = whole.terminals;
+  const uint32_t hash[2] = {whole.keyHash[0], whole.keyHash[1]};
+  uint64_t together = 0, apart = 0;
+  uint32_t sum[2] = {};
+  for (uint32_t i = 0; i < kLots; ++i) {
+    std::vector<GpgpAxiom> axioms{all[i]};
+    apart += derive(axioms, 0).terminals;
+    if (i) axioms.push_back(all[i - 1]);
+    if (i + 1 < kLots) axioms.push_back(all[i + 1]);
+    const GpgpEvaluationResult part = derive(axioms, uint32_t(axioms.size() - 1));
+    together += part.terminals;
+    for (int k = 0; k < 2; ++k) sum[k] += part.keyHash[k];
+    EXPECT_EQ(part.colliders, axioms.size());
+    ASSERT_EQ(part.axiomCount, axioms.size());
+    for (uint32_t a = 1; a < part.axiomCount; ++a) {
+      EXPECT_EQ(part.axioms[a].instanceCount, 0u);
+      EXPECT_EQ(part.axioms[a].terminals, 0u);
+      EXPECT_EQ(part.axioms[a].status, GPGP_SUCCESS);
+    }
+  }
+  EXPECT_EQ(together, terminals);
+  EXPECT_EQ(sum[0], hash[0]);
+  EXPECT_EQ(sum[1], hash[1]);
+  EXPECT_GT(apart, terminals + 10);
+  auto what = init<GpgpEvaluationInfo>();
+  what.axioms = all.data();
+  what.axiomCount = 2;
+  what.contextCount = 3;
+  EXPECT_EQ(evaluation->derive(what), GPGP_ERROR_INVALID_ARGUMENT);
+}
+
 // ---------------------------------------------------------------- on the device
 
-struct WorldTest : DeviceTest {
+struct WorldTest : SpawnerTest {
   GpgpRecorder makeSpawner(GpgpSpawnerFlags flags = 0, uint32_t colliders = 0) {
     GpgpSpawnerCreateInfo info = GPGP_SPAWNER_CREATE_INFO_INIT;
     info.base.queueFamily = device.graphics().family;
     info.maxShapes = info.maxTerminals = 16384;
     info.flags = flags;
     info.maxColliders = colliders;
-    const GpgpRecorder spawner = recorder(gpgpCreateSpawner, info);
-    advance();
-    for (GpgpSpawnReport old = GPGP_SPAWN_REPORT_INIT; gpgpGetSpawnReport(spawner, &old) == GPGP_SUCCESS;) {
-    } // of other tests
-    return spawner;
+    return spawnerOf(info);
   }
-  GpgpAsset load(GpgpRecorder spawner, const void* data, size_t size) {
-    GpgpGrammarCreateInfo info = GPGP_GRAMMAR_CREATE_INFO_INIT;
-    info.data = data;
-    info.size = size;
-    GpgpAsset grammar = nullptr;
-    EXPECT_EQ(gpgpCreateGrammar(context, &info, &grammar), GPGP_SUCCESS) << lastMessage();
-    EXPECT_EQ(gpgpPrewarmGrammar(spawner, grammar), GPGP_SUCCESS) << lastMessage();
-    const GpgpFrame f = advance();
-    device.submitAndWait(
-        [&](VkCommandBuffer cmd) { EXPECT_EQ(gpgpRecordUpload(context, cmd, &f, 0, nullptr), GPGP_SUCCESS); });
-    return grammar;
-  }
+  using SpawnerTest::load;
   GpgpAsset load(GpgpRecorder spawner, const std::vector<uint32_t>& words) {
     return load(spawner, words.data(), words.size() * 4);
   }
@@ -313,6 +388,7 @@ TEST_F(WorldTest, DeviceAndCpuSeeTheSame) {
     const GpgpAsset grammar = c.kernel ? load(spawner, baked.data(), baked.size()) : load(spawner, words);
     std::vector<GpgpAxiom> axioms;
     for (uint32_t i = 0; i < 24; ++i) axioms.push_back(somewhere(random, i, c.colliders ? 20.0f : 90.0f));
+    for (uint32_t i = 0; i < 24; i += 5) axioms[i].hidden = 1;
     std::uniform_real_distribution<float> place(-100, 100);
     for (int k = 0; k < 4; ++k) {
       const GpgpSpawnCamera camera = cameraAt({place(random), 5, place(random)}, {place(random), 0, place(random)});
@@ -326,6 +402,78 @@ TEST_F(WorldTest, DeviceAndCpuSeeTheSame) {
     gpgpDestroyAsset(grammar);
   }
   EXPECT_LT(fewest * 10, most);
+}
+
+TEST_F(WorldTest, TerminalsBecomeAxiomsOnTheDevice) {
+  // Districts of lots, and lots of rooms: the engine's shader is between the two derivations.
+  const auto districts = bake(R"(axiom Box District;
+terminal Park (1, 0); terminal Lot (1, 1);
+District = Repeat(X, 12, ADJUST_TO_FILL) Repeat(Z, 15, ADJUST_TO_FILL) RandomRule(Rand(0, 1)) {
+  0.2: Park | 0.8: Scale(-0.9, Rand(6, 20), -0.9) Rotate(0, Rand(-10, 10), 0) SetAttribute(Rand(0, 1)) Lot
+};
+)"),
+             rooms = bake(R"(axiom Box House;
+terminal Room (1, 0);
+House = Repeat(Y, 3, ADJUST_TO_FILL) Repeat(X, Rand(3, 5) + ShapeCustomAttribute(), ADJUST_TO_FILL) Room;
+)");
+  constexpr uint32_t kLotTerminal = 1, kMost = 4096, kInstances = 16384;
+  std::mt19937 random(23);
+  std::vector<GpgpAxiom> axioms;
+  for (uint32_t i = 0; i < 9; ++i) {
+    axioms.push_back(somewhere(random, i, 300));
+    axioms.back().size[0] = axioms.back().size[2] = 90;
+  }
+  // The CPU by the same text.
+  const spawn::Derivation coarse = spawn::derive(districts, axioms);
+  std::vector<GpgpAxiom> lots;
+  for (const GpgpInstance& instance : coarse.instances) {
+    if (instance.terminal != kLotTerminal) continue;
+    shader::uvec4 words[6], made[6];
+    std::memcpy(words, &instance, sizeof words);
+    for (int w = 0; w < 6; ++w) made[w] = shader::gpgpAxiomWord(words, w, GPGP_AXIOM_DEFAULT_START);
+    std::memcpy(&lots.emplace_back(), made, sizeof made);
+    EXPECT_EQ(lots.back().id, instance.axiomId);
+    EXPECT_EQ(lots.back().seed, instance.seed);
+    double length = 0; // of its x axis: without the extents
+    for (int row = 0; row < 3; ++row) length += std::pow(double(lots.back().transform[4 * row]), 2);
+    EXPECT_NEAR(std::sqrt(length), 1, 1e-5);
+  }
+  ASSERT_GT(lots.size(), 200u);
+  ASSERT_LT(lots.size(), coarse.instances.size());
+  const spawn::Derivation fine = spawn::derive(rooms, lots);
+
+  const GpgpRecorder spawner = makeSpawner();
+  const GpgpAsset outer = load(spawner, districts), inner = load(spawner, rooms);
+  const auto from = host::makeBuffer(device, axioms, kStorage);
+  const host::Buffer blocks(device, VkDeviceSize(96) * kInstances, kStorage),
+      made(device, VkDeviceSize(96) * kMost, kStorage), counter(device, 4, kStorage), count(device, 4, kStorage),
+      results(device, VkDeviceSize(96) * kInstances, kStorage);
+  host::fill(device, counter, 0);
+  GpgpSpawnInfo info = GPGP_SPAWN_INFO_INIT;
+  info.grammar = outer;
+  info.axioms = from.range();
+  info.axiomCount = static_cast<uint32_t>(axioms.size());
+  info.instances = blocks.range();
+  info.count = count.range();
+  EXPECT_EQ(derive(spawner, info).terminals, coarse.terminals);
+  host::ComputeKernel kernel(device, axioms_between, 4, 12);
+  const uint32_t push[3] = {kLotTerminal, GPGP_AXIOM_DEFAULT_START, kMost};
+  kernel.run({&blocks, &made, &counter, &count}, push, kInstances / 64);
+  GpgpSpawnInfo next = GPGP_SPAWN_INFO_INIT;
+  next.grammar = inner;
+  next.axioms = made.range();
+  next.axiomCounter = counter.range();
+  next.axiomCount = kMost;
+  next.instances = results.range();
+  const GpgpSpawnReport report = derive(spawner, next);
+  EXPECT_EQ(report.base.status, GPGP_SUCCESS);
+  EXPECT_EQ(report.terminals, fine.terminals);
+  EXPECT_EQ(report.keyHash[0], fine.keyHash[0]);
+  EXPECT_EQ(report.keyHash[1], fine.keyHash[1]);
+  const auto gpu = host::download<GpgpInstance>(device, results, report.terminals);
+  EXPECT_EQ(bitsOf(gpu), bitsOf(fine.instances));
+  gpgpDestroyAsset(outer);
+  gpgpDestroyAsset(inner);
 }
 
 TEST_F(WorldTest, RandomGrammarsThatAskTheCamera) {

@@ -1,6 +1,7 @@
 // Paths that cross themselves often: what their patches are, that their cost grows with their crossings, and that those
 // with too many are refused before these are looked for.
 #include "oracle.h"
+#include "vector/geometry/order.h"
 #include "vector/patch/drawing.h"
 #include "vector/patch/inversions.h"
 #include "vector/patch/status.h"
@@ -14,6 +15,7 @@
 #include <ctime>
 #include <functional>
 #include <random>
+#include <tuple>
 
 namespace {
 using namespace gpgp;
@@ -349,6 +351,50 @@ TEST(OutlineRoom, WhatDoesNotFitIsRefusedSoon) {
   }
 }
 
+TEST(OutlineRoom, PathsOfADrawingCrossThemselvesSoOftenAndNoMore) {
+  const auto makes = [](std::span<const GpgpPath> paths, uint64_t most) -> std::string {
+    vector::OutlineRoom room(vector::outlineBytes(0), most);
+    const auto drawing = vector::makeDrawing(paths, heap(), nullptr, nullptr, 0, &room);
+    return drawing ? "" : drawing.error().text;
+  };
+  // Paths of which none is tangled by itself, so that each is converted before its crossings are known.
+  const TestPath scribble = random(100, false);
+  std::vector<GpgpPath> many(20, scribble.view());
+  uint64_t crossings = 0;
+  const auto line = [&](int i) { // by brute force
+    return std::array{many[0].points[2 * i], many[0].points[2 * i + 1], many[0].points[2 * ((i + 1) % 101)],
+                      many[0].points[2 * ((i + 1) % 101) + 1]};
+  };
+  const auto side = [](const auto& l, float x, float y) {
+    return (static_cast<double>(l[2]) - static_cast<double>(l[0])) *
+               (static_cast<double>(y) - static_cast<double>(l[1])) >
+           (static_cast<double>(l[3]) - static_cast<double>(l[1])) *
+               (static_cast<double>(x) - static_cast<double>(l[0]));
+  };
+  const int lines = static_cast<int>(many[0].pointCount);
+  ASSERT_EQ(lines, 101);
+  for (int i = 0; i < lines; ++i)
+    for (int j = i + 2; j < lines; ++j) {
+      const auto a = line(i), b = line(j);
+      if (i == 0 && j == lines - 1) continue; // neighbours
+      crossings += side(a, b[0], b[1]) != side(a, b[2], b[3]) && side(b, a[0], a[1]) != side(b, a[2], a[3]);
+    }
+  ASSERT_GT(crossings, 500u);
+  EXPECT_EQ(makes(many, 21 * crossings), "");
+  const std::string refused = makes(many, 10 * crossings);
+  EXPECT_NE(refused.find("the drawing's paths cross themselves more than "), std::string::npos) << refused;
+  EXPECT_TRUE(refused.starts_with("paths[1")) << refused << ": about the eleventh";
+  // Thirty tangles, each far from what one path may have, are refused before any of them is converted.
+  const TestPath tangle = random(2000, true);
+  std::vector<GpgpPath> tangles(30, tangle.view());
+  const double one = seconds([&] { EXPECT_EQ(makes(std::span(tangles).first(1), vector::kMaxDrawingCrossings), ""); });
+  EXPECT_LT(seconds([&] {
+              EXPECT_NE(makes(tangles, vector::kMaxDrawingCrossings).find("more than 8388608 times in all"),
+                        std::string::npos);
+            }),
+            2 * one);
+}
+
 TEST(OutlineRoom, LargeTablesAreUsedAgain) {
   struct Counting : std::pmr::memory_resource {
     size_t held = 0, most = 0;
@@ -407,6 +453,81 @@ TEST(Crossings, AreNeverFewerThanWhatStripsSay) {
     }
     EXPECT_GT(before, found * 8 / 10);
   }
+}
+
+/// The pieces of a path.
+std::pmr::vector<vector::Monotone> piecesOf(const TestPath& path) {
+  std::pmr::vector<vector::Monotone> pieces(heap());
+  EXPECT_TRUE(vector::outline(path.view(), pieces));
+  vector::mergeCoincident(pieces);
+  return pieces;
+}
+
+TEST(Crossings, CutsAreWherePiecesMeetInOrderAndOnce) {
+  for (const TestPath& path : {random(150, true, 6), random(300, false, 7), random(100, true, 8, 1e5f), fan(40)}) {
+    const auto pieces = piecesOf(path);
+    std::pmr::vector<vector::Cut> cuts(heap());
+    ASSERT_TRUE(vector::findCrossings(pieces, cuts));
+    ASSERT_GT(cuts.size(), 1000u);
+    size_t alone = 0;
+    for (size_t first = 0, end; first < cuts.size(); first = end) {
+      for (end = first + 1; end < cuts.size() && cuts[end] >> 32 == cuts[first] >> 32;) ++end;
+      ASSERT_TRUE(end == cuts.size() || cuts[first] < cuts[end]);
+      const double y = vector::heightOfKey(cuts[first]), step = (std::abs(y) + kSide) * 1.5e-7;
+      for (size_t i = first; i < end; ++i) {
+        ASSERT_TRUE(i == first || cuts[i - 1] < cuts[i]) << "each once";
+        const vector::Monotone& piece = pieces[vector::numberOfKey(cuts[i])];
+        ASSERT_TRUE(y > piece.top() && y < piece.bottom());
+        // Another piece is where this one is, within the rows that a float's rounding may be off.
+        const double low = std::min(piece.xAt(y - step), piece.xAt(y + step)) - step,
+                     high = std::max(piece.xAt(y - step), piece.xAt(y + step)) + step;
+        const bool met = std::any_of(pieces.begin(), pieces.end(), [&](const vector::Monotone& other) {
+          if (&other == &piece || y + step < other.top() || y - step > other.bottom()) return false;
+          const double a = other.xAt(y - step), b = other.xAt(y + step);
+          return std::max(a, b) >= low && std::min(a, b) <= high;
+        });
+        alone += !met;
+      }
+    }
+    EXPECT_EQ(alone, 0u);
+  }
+}
+
+TEST(Crossings, SlabsAreInTheOrderOfTheirTops) {
+  for (const GpgpFillRule rule : {GPGP_FILL_NON_ZERO, GPGP_FILL_EVEN_ODD})
+    for (const TestPath& path : {random(150, true, 6), bars(40), fan(60), sharedSides(60)}) {
+      const auto pieces = piecesOf(path);
+      std::pmr::vector<vector::Cut> cuts(heap());
+      std::pmr::vector<vector::Slab> slabs(heap());
+      ASSERT_TRUE(vector::findCrossings(pieces, cuts));
+      ASSERT_TRUE(vector::sweep(pieces, cuts, rule, slabs));
+      ASSERT_FALSE(slabs.empty());
+      for (size_t i = 0; i < slabs.size(); ++i) {
+        ASSERT_LT(slabs[i].top, slabs[i].bottom);
+        ASSERT_TRUE(i == 0 ||
+                    std::tuple(slabs[i - 1].top, slabs[i - 1].left) < std::tuple(slabs[i].top, slabs[i].left));
+      }
+    }
+}
+
+TEST(Crossings, PlacesFoundFromNearbyAreThoseFoundFromNowhere) {
+  const auto pieces = piecesOf(random(300, true, 12));
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> part(0, 1);
+  double worst = 0;
+  for (size_t i = 0; i + 1 < pieces.size(); ++i) {
+    const vector::Monotone &a = pieces[i], &b = pieces[i + 1];
+    std::array<double, 2> t{part(random), part(random)};
+    for (int k = 0; k < 40; ++k) {
+      const double y = std::min(a.top(), b.top()) + (std::max(a.bottom(), b.bottom()) - std::min(a.top(), b.top())) *
+                                                        (k % 2 ? part(random) : k / 40.0);
+      const auto near = vector::xsNear(a, b, y, t);
+      worst = std::max({worst, std::abs(near[0] - a.xAt(y)), std::abs(near[1] - b.xAt(y))});
+      double alone = part(random);
+      worst = std::max(worst, std::abs(a.xNear(y, alone) - a.xAt(y)));
+    }
+  }
+  EXPECT_LT(worst, 1e-8 * static_cast<double>(kSide));
 }
 
 TEST(Crossings, TheStatusIsAList) {

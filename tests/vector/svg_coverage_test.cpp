@@ -47,7 +47,6 @@ struct Property {
 };
 
 const char* const kRect = "<rect x='20' y='20' width='60' height='60' fill='#0a0' stroke='#00a' stroke-width='8' ";
-const char* const kPlain = "<rect x='20' y='20' width='60' height='60' fill='#0a0' stroke='#00a' stroke-width='8'/>";
 const char* const kBare = "<path d='M10 10H70V60H30V30H90V90H10Z' ";
 const char* const kLine = "<path fill='none' stroke='red' stroke-width='20' d='M20 20H80L20 80' ";
 const char* const kClip = "<clipPath id='c'><path d='M0 0H50V100H0Z'/></clipPath><rect x='20' y='20' width='60' "
@@ -78,7 +77,8 @@ const Property kProperties[] = {
      as("<rect x='30' y='40' width='40' height='20' fill='#a00'/>")},
     {"stroke-linejoin", "bevel", "<path fill='none' stroke='red' stroke-width='20' d='M20 80V20H80' ", "/>",
      as("<path fill='red' d='M10 80V20L20 10H80V30H30V80Z'/>")},
-    {"stroke-linejoin", "arcs", kLine, "/>", named("stroke-linejoin 'arcs' is not supported")},
+    {"stroke-linejoin", "arcs", kLine, "/>",
+     as("<path fill='none' stroke='red' stroke-width='20' stroke-linejoin='miter-clip' d='M20 20H80L20 80'/>")},
     {"stroke-miterlimit", "1", "<path fill='none' stroke='red' stroke-width='20' d='M20 80V20H80' ", "/>",
      as("<path fill='red' d='M10 80V20L20 10H80V30H30V80Z'/>")},
     {"stroke-dasharray", "20 10", "<path fill='none' stroke='#a00' stroke-width='20' d='M0 50H50' ", "/>",
@@ -204,7 +204,7 @@ const Property kProperties[] = {
     {"text-rendering", "optimizeSpeed", kRect, "/>", kNothing},
     {"text-shadow", "1px 1px red", kRect, "/>", kNothing, false},
     {"unicode-bidi", "embed", kRect, "/>", kNothing},
-    {"white-space", "pre", kRect, "/>", kNothing},
+    {"white-space", "pre", kRect, "/>", kNothing, false},
     {"word-spacing", "2", kRect, "/>", kNothing},
     {"writing-mode", "tb", kRect, "/>", kNothing},
     // For filters, masks and blending, which svg_layers_test looks at.

@@ -369,6 +369,16 @@ TEST(SvgEqual, ErrorsCountAsOtherRenderersTakeThem) {
        "stroke-width='4' "
        "stroke='url(#p) red'/>",
        "<rect y='7' width='20' height='4' fill='red'/>"},
+      {"a pattern of nothing has its fallback",
+       "<pattern id='p' width='5' height='5'/><rect width='20' height='4' fill='url(#p) red'/>",
+       "<rect width='20' height='4' fill='red'/>"},
+      {"a comma before a command", "<path d='M5 5H20,V20'/>", "<path d='M5 5H20V20'/>"},
+      {"an <svg> is clipped in its own coordinates",
+       "<clipPath id='c'><path d='M1 1h5v5z'/></clipPath><clipPath id='b' clipPathUnits='objectBoundingBox'>"
+       "<path d='M0 0h.5v1z'/></clipPath><svg x='20' y='30' width='40' height='40' viewBox='0 0 10 10' "
+       "clip-path='url(#c)'><rect width='9' height='9'/></svg><svg x='50' y='50' width='20' height='20' "
+       "clip-path='url(#b)'><rect x='5' width='10' height='10'/></svg>",
+       "<path d='M24 34h20v20zM55 50h5v10z'/>"},
       {"markers of less than no size",
        "<marker id='m' markerHeight='-1'><rect width='9' height='9'/></marker><path d='M0 9h20' marker-end='url(#m)'/>",
        ""},

@@ -81,6 +81,7 @@ const Difference kDiffering[] = {
     {"turbulence-stitched", "noise is stitched at the edges of its region (Filter Effects 1, 9.21); no oracle"},
     {"filter-inherited", "references between filters are of SVG 1.1 alone"},
     {"filter-chain", kFunctions},
+    {"effects-of-inner-svg", "an inner svg's effects are in the coordinates of its content (SVG 2, 8.2)"},
     {"filter-on-use-and-symbol", "the x and y of a use move the coordinates of its effects (SVG 2, 5.5)"},
 };
 

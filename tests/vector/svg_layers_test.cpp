@@ -472,8 +472,9 @@ TEST(SvgLayers, PrimitivesInErrorPassOnOrShowNothing) {
       {"<feColorMatrix type='nix'/>", "offset S [0 0 100 90]"},
       {"<feConvolveMatrix kernelMatrix='1 2'/>", "flood [0 0 100 90]"},
       {"<feConvolveMatrix/>", "flood [0 0 100 90]"},
-      {"<feConvolveMatrix order='0' kernelMatrix='1'/>", "flood [0 0 100 90]"},
-      {"<feConvolveMatrix order='1.5' kernelMatrix='1'/>", "offset S [0 0 100 90]"},
+      {"<feConvolveMatrix order='1 1' kernelMatrix='1 2'/>", "flood [0 0 100 90]"},
+      {"<feConvolveMatrix order='-1' kernelMatrix='0 0 0 0 1 0 0 0 0'/>", "convolve/1 S [0 0 100 90] 3 3 1 1 1"},
+      {"<feConvolveMatrix order='1.5' kernelMatrix='1'/>", "flood [0 0 100 90]"},
       {"<feConvolveMatrix targetX='3' kernelMatrix='1 1 1 1 1 1 1 1 1'/>", "flood [0 0 100 90]"},
       {"<feConvolveMatrix order='33' kernelMatrix='1'/>", "offset S [0 0 100 90]"},
       {"<feDiffuseLighting/>", "flood [0 0 100 90]"},
@@ -483,6 +484,7 @@ TEST(SvgLayers, PrimitivesInErrorPassOnOrShowNothing) {
       {"<feNix/><feOffset/>", "offset S [0 0 100 90]"},
       {"<feGaussianBlur stdDeviation='1' edgeMode='wrap'/>", "blur S [0 0 100 90] 1 1"},
       {"<feBlend mode='nix'/>", "blend S S [0 0 100 90]"},
+      {"<feBlend mode='plus-lighter'/>", "blend S S [0 0 100 90]"},
       {"<feComposite operator='nix'/>", "composite S S [0 0 100 90]"},
   };
   for (const auto& c : cases) {
@@ -645,7 +647,7 @@ TEST(SvgLayers, BlendingAndIsolation) {
 }
 
 TEST(SvgLayers, OneLayerAnElement) {
-  // Opacity, mask, filter and mode of one element are one group's, inside its clip.
+  // Opacity, mask and filter of one element are one group's, inside its clip, which its mode is around.
   const Import i = page("<filter id='f'><feOffset dx='1'/></filter><mask id='m'>" + kWhite +
                         "</mask><clipPath id='c'><path d='M0 "
                         "0h50v50'/></clipPath>" +
@@ -654,14 +656,17 @@ TEST(SvgLayers, OneLayerAnElement) {
                         "style='mix-blend-mode:screen'/>");
   EXPECT_EQ(i.placed, Texts());
   expectSound(i);
-  ASSERT_EQ(i.drawing.groups.size(), 3u);
-  EXPECT_TRUE(i.drawing.groups[0].clipped);
-  const ImportedGroup& g = i.drawing.groups[1];
-  EXPECT_EQ(g.parent, 1u);
+  ASSERT_EQ(i.drawing.groups.size(), 4u);
+  ASSERT_TRUE(i.drawing.groups[0].layer);
+  EXPECT_EQ(i.drawing.groups[0].layer->layer.blend, GPGP_BLEND_SCREEN);
+  EXPECT_TRUE(i.drawing.groups[1].clipped);
+  EXPECT_EQ(i.drawing.groups[1].parent, 1u);
+  const ImportedGroup& g = i.drawing.groups[2];
+  EXPECT_EQ(g.parent, 2u);
   EXPECT_EQ(g.opacity, 0.5f);
   ASSERT_TRUE(g.layer);
-  EXPECT_EQ(g.layer->layer.blend, GPGP_BLEND_SCREEN);
-  EXPECT_EQ(g.layer->layer.mask, 3u);
+  EXPECT_EQ(g.layer->layer.blend, GPGP_BLEND_NORMAL);
+  EXPECT_EQ(g.layer->layer.mask, 4u);
   EXPECT_EQ(g.layer->steps.size(), 1u);
   EXPECT_EQ(i.drawing.paths[0].color[3], 1.0f);
 }

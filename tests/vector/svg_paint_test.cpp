@@ -224,4 +224,38 @@ TEST(SvgPaint, ValuesThatAreNotValidLeaveTheOnesBefore) {
             Texts());
 }
 
+TEST(SvgPaint, ErrorsOfValuesAreThoseOfCss) {
+  const std::string whole = "<rect width='100' height='100'/>", green = "<rect width='100' height='100' fill='green'/>";
+  const auto styled = [&](const std::string& css) { return "<style>" + css + "</style>" + whole; };
+  expectSame(styled("rect{fill:gr\\65 en}"), green);
+  expectSame(styled("rect{f\\69ll:\\000067reen}"), green);
+  // Without quotes the value of an attribute is a name.
+  EXPECT_EQ(page(styled("rect[width=100]{fill:green}")).placed,
+            Texts{"test.svg:2:8: warning: style selector 'rect[width=100]' is not valid; its rule is ignored"});
+  expectSame(styled("rect[width='100']{fill:green}"), green);
+  // What is written with commas is of one kind, and what has units is written with commas.
+  const struct {
+    const char *name, *value;
+    bool isValid;
+  } values[] = {{"fill", "rgb(0,50%,0)", false},    {"fill", "rgb(0,50,0,50%)", true},
+                {"fill", "rgb(0 50% 0)", true},     {"fill", "rgb(0%,50%,0%)", true},
+                {"stroke-miterlimit", "-1", false}, {"stroke-miterlimit", "0.5", true}};
+  for (const auto& v : values) {
+    const Import made = page(std::string("<rect width='9' height='9' ") + v.name + "='" + v.value + "'/>");
+    ASSERT_EQ(made.placed.size(), v.isValid ? 0u : 1u) << v.value;
+    if (v.isValid) continue;
+    EXPECT_NE(made.placed[0].find("is not valid; ignored"), std::string::npos) << made.placed[0];
+  }
+  const Import spaced = page(styled("rect{transform:translate(10px 10px)}"));
+  ASSERT_EQ(spaced.placed.size(), 1u);
+  EXPECT_NE(spaced.placed[0].find("error in its transform"), std::string::npos) << spaced.placed[0];
+  EXPECT_LE(worst(picture(spaced), picture(page(whole))), kSame);
+  expectSame(styled("rect{transform:translate(10px, 10px)}"), "<rect x='10' y='10' width='100' height='100'/>");
+  expectSame("<rect width='100' height='100' transform='translate(10 10)'/>",
+             "<rect x='10' y='10' width='100' height='100'/>");
+  // A limit below 1 bevels all corners.
+  const std::string angle = "<path fill='none' stroke='red' stroke-width='20' d='M20 80V20H80' ";
+  expectSame(angle + "stroke-miterlimit='.5'/>", angle + "stroke-linejoin='bevel'/>");
+}
+
 } // namespace

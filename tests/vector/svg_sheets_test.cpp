@@ -185,8 +185,9 @@ TEST(SvgSheets, WhatIsNotReadIsNamedWithItsPlace) {
   EXPECT_EQ(sheeted("", "<style>@media (min-width:9px) {.a{fill:red}}</style>", files).placed,
             Texts{"test.svg:1:73: warning: style rule @media has the condition '(min-width:9px)', which is not "
                   "supported: its contents are ignored"});
-  EXPECT_EQ(sheeted("", "<style>@supports (fill:red) {.a{fill:red}}</style>", files).placed,
-            Texts{"test.svg:1:73: warning: style rule @supports is not supported"});
+  EXPECT_EQ(sheeted("", "<style>@supports fill:red {.a{fill:red}}</style>", files).placed,
+            Texts{"test.svg:1:73: warning: style rule @supports has 'fill:red', which is not a condition; its contents "
+                  "are ignored"});
   EXPECT_EQ(sheeted("\n <?xml-stylesheet href='a.xsl' type='text/xsl'?>", "", files).placed,
             Texts{"test.svg:2:2: warning: <?xml-stylesheet?> of type 'text/xsl' is not supported"});
   EXPECT_EQ(sheeted("<?xml-stylesheet type='text/css'?>", "", files).placed,
@@ -195,6 +196,58 @@ TEST(SvgSheets, WhatIsNotReadIsNamedWithItsPlace) {
             Texts{"test.svg:1:66: warning: <link> has no href; ignored"});
   EXPECT_EQ(import("<?xml-stylesheet href='a.css'?><svg/>").placed,
             Texts{"test.svg:1:1: warning: " + before + "a.css' is another file, and no files are read here" + after});
+}
+
+TEST(SvgSheets, ConditionsAskForWhatIsDrawn) {
+  const char* const hold[] = {"(fill: red)",
+                              "(transform: rotate(30deg))",
+                              "(--a: b)",
+                              "(fill: var(--a))",
+                              "not (display: foo)",
+                              "(fill: red) and (stroke: #00f)",
+                              "(foo: bar) or (fill: red)",
+                              "((foo: bar) or (fill: red)) and (not (a: b))",
+                              "selector(a > b)",
+                              "not (backdrop-filter: blur(3px))",
+                              "not (text-shadow: 1px 1px red)",
+                              "not (clip-path: circle(3px))",
+                              "not font-tech(color-COLRv1)",
+                              "(clip-path: url(#a))",
+                              "(fill: red !important)",
+                              "(width: 3px)",
+                              "NOT (a: b)"};
+  const char* const fail[] = {"(foo: bar)",
+                              "(fill: foo)",
+                              "not (fill: red)",
+                              "(fill: red) and (a: b)",
+                              "(a: b) or (c: d)",
+                              "selector(a::before)",
+                              "font-tech(a)",
+                              "(fill)",
+                              "(fill:)",
+                              "(transform: turn(3))",
+                              "(width: wide)",
+                              "not(fill: foo)",
+                              "()",
+                              "(image-rendering: pixelated)"};
+  for (const bool holds : {true, false})
+    for (const char* condition : holds ? std::span<const char* const>(hold) : std::span<const char* const>(fail)) {
+      const Import i = sheeted("", "<style>@supports " + std::string(condition) + " {.a{fill:red}}</style>", {});
+      EXPECT_EQ(colorOf(i) == 'r', holds) << condition;
+      EXPECT_EQ(i.placed, Texts()) << condition;
+    }
+  for (const char* condition : {"", "fill: red", "(a: b) (c: d)", "(a: b) and (c: d) or (e: f)", "(fill: red", "not"})
+    EXPECT_EQ(sheeted("", "<style>@supports " + std::string(condition) + " {.a{fill:red}}</style>", {}).placed.size(),
+              1u)
+        << condition;
+  std::string deep = "(fill: red)";
+  for (int k = 0; k < 100; ++k) deep = "(" + deep + ")";
+  EXPECT_EQ(sheeted("", "<style>@supports " + deep + " {.a{fill:red}}</style>", {}).placed.size(), 1u);
+  const TextFiles files{{"a.css", ".a{fill:#f00}"}};
+  EXPECT_EQ(colorOf(sheeted("", "<style>@import 'a.css' supports(fill: red);</style>", files)), 'r');
+  EXPECT_EQ(colorOf(sheeted("", "<style>@import 'a.css' supports((fill: red)) screen;</style>", files)), 'r');
+  EXPECT_NE(colorOf(sheeted("", "<style>@import 'a.css' supports(fill: foo);</style>", files)), 'r');
+  EXPECT_NE(colorOf(sheeted("", "<style>@import 'a.css' supports(fill: red) print;</style>", files)), 'r');
 }
 
 TEST(SvgSheets, TheirPlacesAreTheText) {

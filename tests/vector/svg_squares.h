@@ -34,8 +34,38 @@ inline GpgpResult GPGP_CALL shapeSquares(void*, const GpgpSvgText* text, GpgpSvg
   return GPGP_SUCCESS;
 }
 
-/// A page whose text is in that font.
-inline Import written(const std::string& inside) {
+/// The same with a mark on each letter, a square of a tenth that stands half an em above the middle of the letter's
+/// square; in lines that go down, brackets have glyphs of their own.
+inline GpgpResult GPGP_CALL shapeMarked(void*, const GpgpSvgText* text, GpgpSvgGlyphFn glyphFn, void* glyphData) {
+  struct Marked {
+    GpgpSvgGlyphFn fn;
+    void* data;
+    const GpgpSvgText* text;
+  } marked{glyphFn, glyphData, text};
+  return shapeSquares(
+      nullptr, text,
+      [](void* user, const GpgpSvgGlyph* letter) {
+        static const GpgpPathVerb verbs[] = {GPGP_PATH_MOVE, GPGP_PATH_LINE, GPGP_PATH_LINE, GPGP_PATH_LINE,
+                                             GPGP_PATH_CLOSE};
+        static const float points[] = {0, 0, 0.1f, 0, 0.1f, -0.1f, 0, -0.1f};
+        const auto& m = *static_cast<const Marked*>(user);
+        GpgpSvgGlyph glyph = *letter;
+        const char c = m.text->text[letter->cluster];
+        glyph.vertical = m.text->spans[0].vertical && (c == '(' || c == ')');
+        m.fn(m.data, &glyph);
+        GpgpPath square{};
+        square.verbs = verbs, square.verbCount = 5;
+        square.points = points, square.pointCount = 4;
+        glyph.advance = 0;
+        glyph.x += 0.2f * glyph.size, glyph.y -= 0.5f * glyph.size;
+        glyph.paths = &square;
+        m.fn(m.data, &glyph);
+      },
+      &marked);
+}
+
+/// A page whose text is in that font, or another.
+inline Import written(const std::string& inside, GpgpSvgTextFn shape = shapeSquares) {
   const std::string text =
       "<svg xmlns='http://www.w3.org/2000/svg' width='100' height='100' font-size='20'>\n" + inside + "</svg>";
   Import result;
@@ -44,7 +74,7 @@ inline Import written(const std::string& inside) {
   };
   vector::svg::Reporter reporter(listen, &result, "test.svg");
   auto drawing = vector::svg::importSvg(std::as_bytes(std::span(text.data(), text.size())), reporter, {}, {}, {},
-                                        nullptr, {shapeSquares, nullptr});
+                                        nullptr, {shape, nullptr});
   if (drawing) result.drawing = std::move(*drawing);
   return result;
 }

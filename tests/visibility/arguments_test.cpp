@@ -55,6 +55,23 @@ struct ArgumentsTest : VisibilityGpuTest {
   }
 };
 
+TEST_F(ArgumentsTest, ExactSamplingHasSoManyRowsOfAllCameras) {
+  recorder = createRecorder(1, 8192, 64, false, GPGP_SAMPLING_STANDARD_BIT | GPGP_SAMPLING_EXACT_BIT, 1, 0, 0, 29);
+  upload();
+  f = advance();
+  GpgpVisibilityInfo info = good();
+  const std::vector<GpgpCamera> more(28, info.camera);
+  info.moreCameras = more.data();
+  info.moreCameraCount = 28;
+  info.width = 1, info.height = 8192;
+  info.method = GPGP_SAMPLING_STANDARD;
+  expectRecord(GPGP_SUCCESS, info, "");
+  info.method = GPGP_SAMPLING_EXACT;
+  expectRecord(GPGP_ERROR_INVALID_ARGUMENT, info, "height is 8192 for 29 cameras");
+  info.moreCameraCount = 27;
+  expectRecord(GPGP_SUCCESS, info, "");
+}
+
 TEST_F(ArgumentsTest, RecordsAreChecked) {
   expectRecord(GPGP_SUCCESS, good(), "");
   const auto bad = [&](GpgpResult code, const char* text, auto change) {

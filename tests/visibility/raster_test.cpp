@@ -106,7 +106,7 @@ TEST(Raster, CompactAndBlockFormsEqualTheExactOne) {
 
 /// Which samples of a pixel's row a triangle covers.
 std::uint64_t samplesOfRow(const ScreenTriangle& t, ivec2 pixel, int row) {
-  const uvec2 half = samplesIn(outlineOf(makeCandidate(t, 0), pixel), row);
+  const uvec2 half = samplesIn(outlineOf(makeCandidate(t, unitCorners(t), 0), pixel, 64), row);
   return std::uint64_t(half.y) << 32 | half.x;
 }
 
@@ -274,6 +274,18 @@ TEST(Raster, SnappingRoundsToTheNearestAndStaysInTheGuard) {
     EXPECT_EQ(snap(-1.0f - 1.4f * unit, pixels), -1);
     EXPECT_EQ(snap(-1.0f - 1.6f * unit, pixels), -2);
   }
+}
+
+TEST(Raster, FinePlacesLieInTheirUnit) {
+  Random random(3);
+  for (const int pixels : {1, 17, 960, 8192})
+    for (int n = 0; n < 20000; ++n) {
+      const float at = float(random(-3 << 20, 3 << 20)) / float(1 << 20);
+      const int fine = snapFinely(at, pixels), unit = snap(at, pixels);
+      ASSERT_EQ(nearestUnit({fine, fine}).x, unit) << at << ", " << pixels;
+      const double exact = (double(at) + 1) * pixels * 128 * kFine;
+      ASSERT_LE(std::abs(exact - fine), 1 + pixels / 256.0) << at << ", " << pixels;
+    }
 }
 
 TEST(Raster, DepthKeysAreOrderedNearestFirst) {

@@ -256,9 +256,10 @@ TEST(RayReference, NothingShowsThroughCornersOnEdges) {
 
 // A limit of exact sampling at T-junctions: tiles of a wall that are too thin for margins leave cracks, through which
 // triangles behind it show that no ray meets. The shares are what is measured; a mend makes them less.
+// Tiles are 1/11, 1/45 and 1/90 pixel high.
 TEST(RayReference, ThinTilesLeaveCracksToExactSampling) {
-  // Rows: 1/11, 1/23 and 1/45 pixel high; of the triangles behind them, how many show in hundreds at least and at most.
-  for (const auto& [rows, least, most] : {std::tuple(300, 0u, 1u), {600, 20u, 35u}, {1200, 70u, 85u}}) {
+  // Of the triangles behind the rows, how many show in hundreds at least and at most.
+  for (const auto& [rows, least, most] : {std::tuple(300, 0u, 0u), {1200, 0u, 1u}, {2400, 8u, 20u}}) {
     uint32_t hidden = 0;
     Scene scene = staggeredWall(3, hidden, rows, 24, 16);
     const RaySceneOf rays(scene);
@@ -273,9 +274,6 @@ TEST(RayReference, ThinTilesLeaveCracksToExactSampling) {
     const uint32_t behind = scene.params.triangleCount - hidden;
     EXPECT_GE(through * 100, behind * least) << rows;
     EXPECT_LE(through * 100, behind * most) << rows;
-    if (least > 0) {
-      EXPECT_GT(through, exact.counters.unresolved) << rows; // more than what is in doubt
-    }
   }
 }
 

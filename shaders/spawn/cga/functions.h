@@ -103,6 +103,11 @@ GPGP_FN float cgaModulo(float a, float b) {
   return settle(a < 0.0f ? -rest : rest);
 }
 
+/// Of what a function gives no number.
+GPGP_FN bool cgaHasNoValue(uint function, float a) {
+  return a < 0.0f && (function == kCgaLnMath || function == kCgaLog10Math || function == kCgaSqrtMath);
+}
+
 /// All of GPGP_CGA_MATH but Rand and P. b: of those with two arguments. Conditions give 0 or 1.
 GPGP_FN float cgaMath(uint function, float a, float b) {
   switch (function) {

@@ -51,8 +51,11 @@ GPGP_FN CgaValue cgaCallMath(uint function, uint first, uint count) {
     const float high = count == 1u ? a : b;
     return cgaFloatValue(add(low, multiply(r, subtract(high, low))));
   }
+  // What no number is stays one: isnan(ln(-1)).
+  if (function == kCgaIsnanMath) return cgaBoolValue(cgaStack(first).type == kCgaNothing);
+  if (cgaHasNoValue(function, a)) return cgaMake(kCgaNothing, 0u);
   const float result = cgaMath(function, a, b);
-  if (function == kCgaIsinfMath || function == kCgaIsnanMath) return cgaBoolValue(result != 0.0f);
+  if (function == kCgaIsinfMath) return cgaBoolValue(result != 0.0f);
   return cgaFloatValue(result);
 }
 

@@ -79,7 +79,7 @@ GPGP_CONST uint kCgaChunkHeader = 3u;
   X(SetAttribute, 1) /* slot; pops (host) */                                                                           \
   X(End, 0)          /* a shape of which nothing came is a leaf (host) */
 
-#define GPGP_CGA_COUNT(name, operands) +1
+#define GPGP_CGA_COUNT(name, operands) +1 // NOLINT(bugprone-macro-parentheses): a term of a sum
 GPGP_CONST uint kCgaInstructions = 0u GPGP_CGA_INSTRUCTIONS(GPGP_CGA_COUNT);
 
 // A table of parts: count, then the offset of each part's record.
@@ -87,10 +87,11 @@ GPGP_CONST uint kCgaPartKind = 0u;     // kCgaPart... below
 GPGP_CONST uint kCgaPartSelector = 1u; // which of the block's values is its size or selector
 GPGP_CONST uint kCgaPartBody = 2u;     // chunk, or the offset of a nested table
 GPGP_CONST uint kCgaPartWords = 3u;
-GPGP_CONST uint kCgaPartEach = 0u;     // a part; of components, a shape each
-GPGP_CONST uint kCgaPartTogether = 1u; // components as one shape
-GPGP_CONST uint kCgaPartGroup = 2u;    // a nested table
-GPGP_CONST uint kCgaPartRepeated = 3u; // a nested table that repeats
+GPGP_CONST uint kCgaPartEach = 0u;      // a part; of components, a shape each
+GPGP_CONST uint kCgaPartTogether = 1u;  // components as one shape
+GPGP_CONST uint kCgaPartConnected = 2u; // of components as one shape, one for each that hang together
+GPGP_CONST uint kCgaPartGroup = 3u;     // a nested table
+GPGP_CONST uint kCgaPartRepeated = 4u;  // a nested table that repeats
 GPGP_CONST uint kCgaNoSelector = 0xffffffffu;
 
 // How a run ended.

@@ -7,6 +7,7 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 #endif
 // A round of derivation by the interpreter. Generated kernels put their own functions in the place of interpret.h.
+#define GPGP_FIELDS // it runs every grammar
 #include "spawn/shared/bindings.glsl"
 
 #include "spawn/derive/interpret.h"

@@ -242,8 +242,9 @@ Seen seenOf(Shape s) {
 #else
   const uint axiom = s.axiom * 6;
 #endif
-  return seenBy(record.view, s, uintBitsToFloat(axioms[axiom]), uintBitsToFloat(axioms[axiom + 1]),
-                uintBitsToFloat(axioms[axiom + 2]));
+  return hiddenFrom(seenBy(record.view, s, uintBitsToFloat(axioms[axiom]), uintBitsToFloat(axioms[axiom + 1]),
+                           uintBitsToFloat(axioms[axiom + 2])),
+                    axioms[axiom + 4].w);
 }
 
 void look(Shape s) {
@@ -252,6 +253,22 @@ void look(Shape s) {
     seen = seenOf(s);
   }
 }
+
+#ifdef GPGP_FIELDS
+float readField(Shape s, uint field, float x, float z) {
+#ifdef GPGP_COLLIDERS
+  const uint axiom = axiomNumber(s.axiom) * 6;
+#else
+  const uint axiom = s.axiom * 6;
+#endif
+  const vec3 point = framePoint(s, vec3(x, 0.0, z));
+  const FieldPlace at = placeInField(record.fields[field], worldCoordinate(point, uintBitsToFloat(axioms[axiom])),
+                                     worldCoordinate(point, uintBitsToFloat(axioms[axiom + 2])));
+  return fieldBetween(at, uintBitsToFloat(fieldWords[at.near]), uintBitsToFloat(fieldWords[at.near + at.right]),
+                      uintBitsToFloat(fieldWords[at.near + at.far]),
+                      uintBitsToFloat(fieldWords[at.near + at.far + at.right]));
+}
+#endif
 
 // Families are in a generated kernel's table, everything else that multiplies in the graph's words.
 Fan fanFor(Shape s) {

@@ -269,7 +269,10 @@ void main() {
       }
 #ifdef GPGP_COLLIDERS
       if (end == kEndGoesOn) end = runContext(s, arrives);
-      if (end == kEndTerminal) s.axiom = axiomNumber(s.axiom); // also of a family's, which goes through no chain
+      if (end == kEndTerminal) { // also of a family's, which goes through no chain
+        s.axiom = axiomNumber(s.axiom);
+        if (s.axiom >= record.contextFrom) end = kEndDiscarded;
+      }
 #else
       if (end == kEndGoesOn) end = runChain(s, arrives, record.maxDepth);
 #endif

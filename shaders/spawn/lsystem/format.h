@@ -9,7 +9,7 @@
 GPGP_SHADER_BEGIN
 
 GPGP_CONST uint kLsysMagic = 0x736c7067u; // "gpls"
-GPGP_CONST uint kLsysVersion = 1u;
+GPGP_CONST uint kLsysVersion = 2u;
 
 // Words of the header.
 GPGP_CONST uint kLsysHeadMagic = 0u;
@@ -28,7 +28,8 @@ GPGP_CONST uint kLsysHeadTaper = 12u;    // factor of !
 GPGP_CONST uint kLsysHeadTropism = 13u;  // direction of unit length, then elasticity
 GPGP_CONST uint kLsysHeadAxiom = 17u;    // production whose successor is the axiom
 GPGP_CONST uint kLsysHeadSegment = 18u;  // shape of segments
-GPGP_CONST uint kLsysHeadSections = 19u; // a count of entries and an offset for each
+GPGP_CONST uint kLsysHeadRows = 19u;     // of the table that code begins with: steps, then a value a row and step
+GPGP_CONST uint kLsysHeadSections = 20u; // a count of entries and an offset for each
 GPGP_CONST uint kLsysSectionSymbols = 0u;
 GPGP_CONST uint kLsysSectionProductions = 1u;
 GPGP_CONST uint kLsysSectionContexts = 2u;
@@ -37,7 +38,7 @@ GPGP_CONST uint kLsysSectionTerminals = 4u;
 GPGP_CONST uint kLsysSectionCode = 5u;
 GPGP_CONST uint kLsysSectionNames = 6u; // bytes, each name ends in 0
 GPGP_CONST uint kLsysSections = 7u;
-GPGP_CONST uint kLsysHeadSize = 19u + 2u * 7u;
+GPGP_CONST uint kLsysHeadSize = 20u + 2u * 7u;
 
 // Flags of the header.
 GPGP_CONST uint kLsysContexts = 1u;   // a production has a context
@@ -138,6 +139,7 @@ GPGP_CONST uint kLsysNumber = 1u;   // a float follows
 GPGP_CONST uint kLsysVariable = 2u; // its number follows
 GPGP_CONST uint kLsysRandom = 3u;   // [0, 1); the draw's number follows
 GPGP_CONST uint kLsysNormal = 4u;   // mean 0, deviation 1; the draw's number follows
+GPGP_CONST uint kLsysByStep = 5u;   // a value of each step: the number of its row in the table of steps follows
 GPGP_CONST uint kLsysNegate = 8u;   // of one value
 GPGP_CONST uint kLsysNot = 9u;
 GPGP_CONST uint kLsysSin = 10u; // angles in degrees
@@ -154,7 +156,8 @@ GPGP_CONST uint kLsysFloor = 20u;
 GPGP_CONST uint kLsysCeil = 21u;
 GPGP_CONST uint kLsysRound = 22u;
 GPGP_CONST uint kLsysSign = 23u;
-GPGP_CONST uint kLsysAdd = 32u; // of two
+GPGP_CONST uint kLsysTruncate = 24u; // towards 0
+GPGP_CONST uint kLsysAdd = 32u;      // of two
 GPGP_CONST uint kLsysSubtract = 33u;
 GPGP_CONST uint kLsysMultiply = 34u;
 GPGP_CONST uint kLsysDivide = 35u;

@@ -47,6 +47,7 @@ GPGP_FN float lsysUnary(uint code, float a) {
   if (code == kLsysFloor) return settle(floor(a));
   if (code == kLsysCeil) return settle(-floor(-a));
   if (code == kLsysRound) return settle(floor(add(a, 0.5f)));
+  if (code == kLsysTruncate) return settle(a < 0.0f ? -floor(-a) : floor(a));
   return a == 0.0f ? 0.0f : (a < 0.0f ? -1.0f : 1.0f); // kLsysSign
 }
 
@@ -70,6 +71,13 @@ GPGP_FN float lsysBinary(uint code, float a, float b) {
   return arcTangentDegrees(a, b); // kLsysAtan2
 }
 
+/// A value of the table of steps; a step beyond it has the values of the last.
+GPGP_FN float lsysOfStep(LSYS_STRING uint row, uint step) {
+  const uint code = lsysWord(LSYS_S kLsysHeadSections + 2u * kLsysSectionCode + 1u);
+  const uint steps = lsysWord(LSYS_S code);
+  return uintBitsToFloat(lsysWord(LSYS_S code + 1u + row * steps + min(step, steps - 1u)));
+}
+
 /// The value of the program at word `at`, which becomes the word behind it.
 GPGP_FN float lsysEvaluate(LSYS_STRING GPGP_INOUT(uint) at, GPGP_INOUT(LsysVariables) variables, LsysDraws draws) {
   float stack[kMostStackDepth];
@@ -84,6 +92,8 @@ GPGP_FN float lsysEvaluate(LSYS_STRING GPGP_INOUT(uint) at, GPGP_INOUT(LsysVaria
         value = uintBitsToFloat(word);
       else if (code == kLsysVariable)
         value = variables.values[word];
+      else if (code == kLsysByStep)
+        value = lsysOfStep(LSYS_S word, draws.step);
       else if (code == kLsysRandom)
         value = lsysDraw(draws, word);
       else {

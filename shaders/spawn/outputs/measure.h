@@ -10,8 +10,8 @@
 GPGP_SHADER_BEGIN
 
 // Bindings of descriptor set 0, behind those of spawn/shared/layout.h.
-GPGP_CONST int kBindMeasured = 22;
-GPGP_CONST int kBindMeasuring = 23;
+GPGP_CONST int kBindMeasured = 23;
+GPGP_CONST int kBindMeasuring = 24;
 
 // GpgpAxiomMeasures, in words
 GPGP_CONST uint kMeasuredTerminals = 6u;

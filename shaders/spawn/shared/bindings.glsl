@@ -28,6 +28,8 @@ layout(set = 0, binding = kBindAxiomCounter, std430) readonly buffer AxiomCounte
 // where the host reads it
 layout(set = 0, binding = kBindReport, std430) writeonly buffer Report { SpawnState report; };
 layout(set = 0, binding = kBindRanges, std430) buffer Ranges { uint axiomRanges[]; }; // kRangeWords each
+// of the world: those of all fields (field.h)
+layout(set = 0, binding = kBindFields, std430) readonly buffer Fields { uint fieldWords[]; };
 /// Where in order[] the record is that comes at a place.
 uint orderedAt(uint place) { return 3 * record.maxTerminals + place; }
 /// Where in order[] it says how many quads come before a place, up to that behind the last record.

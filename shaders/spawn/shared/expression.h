@@ -2,13 +2,31 @@
 // All values are settled floats; conditions are 1 and 0. Equality tolerates rounding, as the language asks for normals.
 #ifndef GPGP_SHADERS_SPAWN_EXPRESSION_H
 #define GPGP_SHADERS_SPAWN_EXPRESSION_H
+#include "spawn/shared/field.h"
 #include "spawn/shared/view.h"
+
+// Fields of the world: the CPU reads them where the engine has them, a GPU in the buffer that is bound. Kernels of
+// grammars without fields (GPGP_FIELDS) have nothing of it.
+#ifdef __cplusplus
+namespace gpgp::shader {
+class FieldReader {
+public:
+  virtual ~FieldReader() = default;
+  /// Of field number `field`, at a point in metres along the shape's axes from its centre.
+  virtual float read(const Shape& s, uint field, float x, float z) const = 0;
+};
+} // namespace gpgp::shader
+#define GPGP_READ_FIELD(s, field, x, z) (fields ? fields->read(s, field, x, z) : 0.0f)
+#elif defined(GPGP_FIELDS)
+float readField(Shape s, uint field, float x, float z); // derive/derive.glsl
+#define GPGP_READ_FIELD(s, field, x, z) readField(s, field, x, z)
+#endif
 
 // What the camera sees of the shape whose operator is being run. Whoever runs the operator works it out before, once
 // for all its parameters: in C++ it is passed on, in GLSL look() of derive/derive.glsl leaves it in a variable.
 #ifdef __cplusplus
-#define GPGP_SEEN_PARAMETER , Seen seen = seenFromNowhere()
-#define GPGP_SEEN_ARGUMENT , seen
+#define GPGP_SEEN_PARAMETER , Seen seen = seenFromNowhere(), const FieldReader *fields = nullptr
+#define GPGP_SEEN_ARGUMENT , seen, fields
 #define GPGP_LOOK(shape)
 #else
 #define GPGP_SEEN_PARAMETER
@@ -81,6 +99,11 @@ GPGP_FN float evaluate(GPGP_GRAPH Shape s, uint at, uint index GPGP_SEEN_PARAMET
     } else if (code >= kCodeAttributes) {
       stack[depth] = code >= kCodeView ? seenValue(seen, code) : attributeOf(s, code);
       depth += 1u;
+#ifdef GPGP_READ_FIELD
+    } else if (code >= kCodeField) {
+      depth -= 1u;
+      stack[depth - 1u] = GPGP_READ_FIELD(s, code - kCodeField, stack[depth - 1u], stack[depth]); // NOLINT
+#endif
     } else {
       depth -= 1u;
       float drawn = 0.0f;

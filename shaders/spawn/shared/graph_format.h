@@ -21,7 +21,7 @@
 GPGP_SHADER_BEGIN
 
 GPGP_CONST uint kGraphMagic = 0x67707067u; // "gppg"
-GPGP_CONST uint kGraphVersion = 9u;
+GPGP_CONST uint kGraphVersion = 10u;
 
 // header words
 GPGP_CONST uint kHeaderMagic = 0u;
@@ -30,10 +30,10 @@ GPGP_CONST uint kHeaderWords = 2u;    // of everything
 GPGP_CONST uint kHeaderChecksum = 3u; // of all words from kHeaderChecked on
 GPGP_CONST uint kHeaderChecked = 4u;
 GPGP_CONST uint kHeaderSections = 4u; // count and offset of each section
-GPGP_CONST uint kHeaderBuckets = 28u; // terminal lines
-GPGP_CONST uint kHeaderPhases = 29u;  // of derivation, where there are Collider or IfCollides; else 0
-GPGP_CONST uint kHeaderPieces = 30u;  // polygons that SubDiv makes, the last ones of all
-GPGP_CONST uint kHeaderSize = 32u;
+GPGP_CONST uint kHeaderBuckets = 30u; // terminal lines
+GPGP_CONST uint kHeaderPhases = 31u;  // of derivation, where there are Collider or IfCollides; else 0
+GPGP_CONST uint kHeaderPieces = 32u;  // polygons that SubDiv makes, the last ones of all
+GPGP_CONST uint kHeaderSize = 36u;    // a multiple of four
 
 // sections, in order
 GPGP_CONST uint kSectionNodes = 0u;
@@ -48,7 +48,8 @@ GPGP_CONST uint kSectionNames = 8u; // bytes in words, each name ends in 0
 GPGP_CONST uint kSectionDivisions = 9u;
 GPGP_CONST uint kSectionQuads = 10u;
 GPGP_CONST uint kSectionAxioms = 11u;
-GPGP_CONST uint kSectionCount = 12u;
+GPGP_CONST uint kSectionFields = 12u; // of the world: names, by their numbers
+GPGP_CONST uint kSectionCount = 13u;
 
 // node: eight words. What a terminal says lies in the first four, which are read at once.
 GPGP_CONST uint kNodeOperator = 0u; // and kNodeFilter, kNodeDraws, kNodeSees, and its priority << kNodePriority
@@ -156,6 +157,8 @@ GPGP_ATTRIBUTE_TABLE(GPGP_ATTRIBUTE)
 #define GPGP_SEEN(name, number, spelling, value, member) GPGP_CONST uint kCode##name = number;
 GPGP_VIEW_TABLE(GPGP_SEEN)
 #undef GPGP_SEEN
+GPGP_CONST uint kCodeField = 24u; // the first field
+GPGP_CONST uint kMaxFields = 8u;
 GPGP_CONST uint kCodeAttributes = 32u; // the first attribute
 GPGP_CONST uint kCodeView = 52u;       // the first one of what the camera sees
 GPGP_CONST uint kCodeCount = 55u;

@@ -28,6 +28,7 @@ GPGP_CONST int kBindBounds = 18;
 GPGP_CONST int kBindBoundKeys = 19;
 GPGP_CONST int kBindReport = 20;
 GPGP_CONST int kBindRanges = 21;
+GPGP_CONST int kBindFields = 22;
 
 /// Counters of one recording, cleared at its start, and its report.
 struct SpawnState {
@@ -81,6 +82,15 @@ struct View {
   vec4 left, right, bottom, top, front, back; // normals of unit length, or 0 and a w that nothing is outside of
 };
 
+/// A field of the world (field.h). Its rows along x lie one after the other.
+struct FieldGrid {
+  float minX, minZ;           // of the first value, in the world
+  float perMetreX, perMetreZ; // steps of the grid; 0 along an axis with one value
+  uint width, height;         // at least 1
+  uint first;                 // its first value among those of all fields
+  uint unused;
+};
+
 /// What the CPU says with each recording.
 struct SpawnConstants {
   uint axiomCount;        // at most
@@ -120,7 +130,10 @@ struct SpawnConstants {
   uint one;            // 1, which no compiler knows
   uint firstInstance;  // added to what draws begin with
   uint byAxiom;        // 1: every axiom has a range of the instances
-  View view;           // of the camera
+  uint contextFrom;    // axioms from this one on have colliders alone: their terminals are nothing
+  uint unused0, unused1, unused2;
+  View view;                    // of the camera
+  FieldGrid fields[kMaxFields]; // by their numbers in the grammar
 };
 
 // What becomes of terminals.

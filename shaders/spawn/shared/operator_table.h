@@ -77,6 +77,10 @@
   ROW(Noise, 17u, "Noise", 0, GPGP_EXPRESSION_NOISE, noise(a, b))                                                      \
   LAST(Random, 18u, "Rand", 0, GPGP_EXPRESSION_RANDOM, add(a, multiply(subtract(b, a), drawn)))
 
+// A code reads a field of the world, kCodeField + its number: it takes x and z, in metres along the shape's axes from
+// its centre, and leaves the field's value there (field.h).
+#define GPGP_FIELD_SPELLING "Field"
+
 // Codes that leave an attribute of the shape. ROW(name, number, spelling, axes, value, member)
 //
 //   name, number  kCode + name; with one axis + axis, with two + 3 * axis + component

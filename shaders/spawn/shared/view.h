@@ -25,15 +25,27 @@ GPGP_FN Seen seenFromNowhere() {
   return seen;
 }
 
+/// Of an axiom that the engine calls hidden (GpgpAxiom::hidden).
+GPGP_FN Seen hiddenFrom(Seen seen, uint hidden) {
+  if (hidden != 0u) seen.outside = kLargest;
+  return seen;
+}
+
+GPGP_CONST float kShortest = 9.5367432e-7f, kLongest = 1.0737418e9f;
 /// 0, or from 2^-20 to 2^30: sums of products of two of these neither under- nor overflow, so that they need not be
 /// settled.
-GPGP_FN float nearbyLength(float settled) {
-  const float clamped = clamp(settled, -1.0737418e9f, 1.0737418e9f);
-  return abs(settled) < 9.5367432e-7f ? 0.0f : clamped;
+#ifdef __cplusplus
+inline float nearbyLength(float settled) {
+  return abs(settled) < kShortest ? 0.0f : clamp(settled, -kLongest, kLongest);
 }
-GPGP_FN vec3 nearbyLengths(vec3 settled) {
+inline vec3 nearbyLengths(vec3 settled) {
   return vec3(nearbyLength(settled.x), nearbyLength(settled.y), nearbyLength(settled.z));
 }
+#else
+vec3 nearbyLengths(vec3 settled) {
+  return mix(clamp(settled, -kLongest, kLongest), vec3(0.0), lessThan(abs(settled), vec3(kShortest)));
+}
+#endif
 GPGP_FN float sumOfProducts(vec3 a, vec3 b) {
   GPGP_PRECISE float sum = a.x * b.x + a.y * b.y + a.z * b.z;
   return sum;

@@ -1,4 +1,4 @@
-// The how manieth of its row a triangle is among a workgroup's 256 of one round, in the order of their numbers.
+// A triangle's index within its row, among a workgroup's 256 of one round, in the order of their numbers.
 //
 // RANKED_ROWS: rows there are at most. All invocations call clearRanks, enterRank and rankOf with barriers between
 // them. rowStart holds where each row's next entry of this workgroup lies.

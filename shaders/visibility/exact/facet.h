@@ -62,16 +62,11 @@ GPGP_FN float leadWithin(Facet a, Facet b) {
 /// Whether `a` is nearer than `b` anywhere in that box.
 GPGP_FN bool isNearerSomewhere(Facet a, Facet b) { return a.nearest < b.farthest && leadWithin(a, b) > 0.0f; }
 
-struct Corners {
-  ivec2 p0;
-  ivec2 p1;
-  ivec2 p2;
-};
 GPGP_FN Corners cornersOf(Candidate c) {
   Corners r;
-  r.p0 = c.p0;
-  r.p1 = c.p1;
-  r.p2 = c.p2;
+  r.p0 = nearestUnit(c.p0);
+  r.p1 = nearestUnit(c.p1);
+  r.p2 = nearestUnit(c.p2);
   return r;
 }
 

@@ -25,10 +25,10 @@ shared uvec3 sums[64]; // entries, pixels with short lists, with long ones
 shared uvec3 first;
 
 /// Pixels of those that a triangle touches where it comes in front of the limit.
-uvec2 inFront(ScreenTriangle t, uvec2 touched, ivec2 corner) {
+uvec2 inFront(Candidate c, uvec2 touched, ivec2 corner) {
   bool reversed = params.reversedDepth != 0u;
-  uint nearest = depthKey(reversed ? t.zMax : t.zMin, reversed);
-  uint farthest = depthKey(reversed ? t.zMin : t.zMax, reversed);
+  uint nearest = depthKey(reversed ? c.zMax : c.zMin, reversed);
+  uint farthest = depthKey(reversed ? c.zMin : c.zMax, reversed);
   for (uvec2 left = touched & limited; (left.x | left.y) != 0u;) {
     int bit = lowestBit(left);
     uvec2 one = bit < 32 ? uvec2(1u << bit, 0u) : uvec2(0u, 1u << (bit - 32));
@@ -36,7 +36,7 @@ uvec2 inFront(ScreenTriangle t, uvec2 touched, ivec2 corner) {
     uint limit = limits[bit];
     bool hidden = nearest > limit;
     if (!hidden && farthest > limit)
-      hidden = nearestKey(t, isCompact(t), corner + ivec2(bit & 7, bit >> 3), reversed) > limit;
+      hidden = nearestKey(c, corner + ivec2(bit & 7, bit >> 3), reversed) > limit;
     if (hidden) touched &= ~one;
   }
   return touched;
@@ -79,10 +79,11 @@ void enterTile(uint tile, uint begin, uint middle, uint end) {
   }
   barrier();
   for (uint i = begin + lane; i < end; i += 64u) {
-    ScreenTriangle t = triangleOf(readCandidate(pairs[placedAt(i)]));
+    Candidate c = readCandidate(pairs[placedAt(i)]);
+    ScreenTriangle t = triangleOf(c);
     uvec2 mask = touchedPixels(t, pixelBounds(t.p0, t.p1, t.p2, grid), corner);
     if (i < middle) {
-      mask = inFront(t, mask, corner);
+      mask = inFront(c, mask, corner);
       if ((mask.x & ~unseen.x) != 0u) atomicOr(unseen.x, mask.x);
       if ((mask.y & ~unseen.y) != 0u) atomicOr(unseen.y, mask.y);
       keep(i, mask);
@@ -97,7 +98,7 @@ void enterTile(uint tile, uint begin, uint middle, uint end) {
     if (i < middle) continue;
     uvec2 mask = uvec2(pairs[i * 2u], pairs[i * 2u + 1u]) & unseen;
     uvec2 asked = mask & limited;
-    if ((asked.x | asked.y) != 0u) mask = inFront(triangleOf(readCandidate(pairs[placedAt(i)])), mask, corner);
+    if ((asked.x | asked.y) != 0u) mask = inFront(readCandidate(pairs[placedAt(i)]), mask, corner);
     keep(i, mask);
   }
   barrier();

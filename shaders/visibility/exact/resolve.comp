@@ -42,8 +42,8 @@ uint resolveSome(uint first, uint count) {
     Candidate c = readCandidate(item);
     isWide = !isCompact(triangleOf(c));
     putCorners(cornersOf(c), pixel * 256);
-    Footing footing = footingIn(c, pixel);
-    o = outlineOf(c, pixel);
+    Footing footing = footingOf(c, pixel);
+    o = outlineIn(c, pixel);
     own.id = c.id;
     key = middleKey(c, o, footing, pixel, reversed);
     setFacet(own, facetOf(c, footing, pixel, reversed));

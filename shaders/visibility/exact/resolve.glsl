@@ -17,7 +17,9 @@ shared uvec4 keys[kBatch / 4u];
 shared vec4 edges[kBatch]; // their outlines, in order: left, right
 shared uvec2 thirds[kBatch]; // as bits; the last one says whether it is a left one
 shared uint rows[kBatch];    // first and last; parallax
-shared uvec4 opens[kBatch];  // with kNonOpaque: pixel, candidate, its draw's flags; 0: it is opaque
+/// With kNonOpaque: pixel, candidate, its draw's flags; 0: it is opaque. One more than there are: glslang would make it
+/// of the type of a uniform array as long, whose layout shared memory must not have.
+shared uvec4 opens[kBatch + 1u];
 
 /// Bits: which of 32 columns lie before one, for those from 32 before the first to 64 behind it. Two reads of it are
 /// faster than what makes a mask.
@@ -38,10 +40,7 @@ void show(uint id) {
   if (!isShown(id)) atomicOr(bits[id >> 5u], 1u << (id & 31u));
 }
 
-Footing footingIn(Candidate c, ivec2 pixel) {
-  ScreenTriangle t = triangleOf(c);
-  return footingOf(t, isCompact(t), pixel);
-}
+Outline outlineIn(Candidate c, ivec2 pixel) { return outlineOf(c, pixel, float(max(params.width, params.height))); }
 
 /// Where entries have the same depth: by number, then place; the last only tells CPU references apart.
 bool precedes(uint first, uint second, bool otherwise) {

@@ -166,8 +166,8 @@ bool resolveBatch(inout Rest rest, uint n, uint next, ivec2 pixel, inout Left sa
     isKnown = isShown(c.id);
     isWide = !isCompact(t);
     putCorners(cornersOf(c), pixel * 256);
-    Footing footing = footingIn(c, pixel);
-    outline = outlineOf(c, pixel);
+    Footing footing = footingOf(c, pixel);
+    outline = outlineIn(c, pixel);
     key = middleKey(c, outline, footing, pixel, reversed);
     begin = nearestKey(t, footing, reversed);
     end = farthestKey(t, footing, reversed);
@@ -256,7 +256,7 @@ void resolveLong(uint begin, uint end, ivec2 pixel) {
   uint most = 0u;
   for (uint i = begin + laneOf(); i < end; i += kBatch) {
     Candidate c = readCandidate(entries[i]);
-    uint key = nearestKey(triangleOf(c), footingIn(c, pixel), params.reversedDepth != 0u);
+    uint key = nearestKey(c, pixel, params.reversedDepth != 0u);
     depths[i] = key;
     least = min(least, key);
     most = max(most, key);

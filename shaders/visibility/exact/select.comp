@@ -57,6 +57,7 @@ void main() {
     }
     barrier();
     ScreenTriangle t;
+    Corners fine;
     uint id = 0u;
     bool seen = false;
     uvec3 tiles = uvec3(0u);
@@ -67,7 +68,7 @@ void main() {
       uint item;
       Fetched f = fetchNumber(queue[params.maxItems + first + gl_LocalInvocationIndex], item);
       id = f.id;
-      if (classifyFetched(f, t) == kWhole) {
+      if (classifyCandidate(f, t, fine) != kClipped) {
         ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
         seen = isSeen(id);
         bool open = kNonOpaque && isNonOpaque(f.flags);
@@ -94,7 +95,7 @@ void main() {
         uint order[kMostTiles]; // all counted first: what that says is waited for once, after the candidate is written
         for (uint i = 0u; i < kMostTiles; ++i)
           if (i < tiles.z) order[i] = countIn(tileAmong(tiles, i), seen);
-        writeCandidate(candidate, makeCandidate(t, id));
+        writeCandidate(candidate, makeCandidate(t, fine, id));
         if (places == 2u)
           writeNonOpaque(candidate, makeNonOpaque(queue[params.maxItems + first + gl_LocalInvocationIndex]));
         for (uint i = 0u; i < kMostTiles; ++i)

@@ -17,13 +17,13 @@ layout(constant_id = 3) const bool kNonOpaque = true; // some recordings have tr
 bool open;
 NonOpaque nonOpaque;
 
-void add(ScreenTriangle t, uint id, uint camera) {
+void add(ScreenTriangle t, Corners fine, uint id, uint camera) {
   ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(camera));
   if (bounds.x >= bounds.z || bounds.y >= bounds.w) return;
   uint places = open ? 2u : 1u;
   uint place = atomicAdd(counters.candidates, places);
   if (place + places <= params.maxCandidates) {
-    writeCandidate(place, makeCandidate(t, id));
+    writeCandidate(place, makeCandidate(t, fine, id));
     if (open) writeNonOpaque(place, nonOpaque);
     uint slices = clamp(tilesOf(bounds, camera).z / kSliceTiles, 1u, kMaxSlices);
     uint first = atomicAdd(counters.largeCandidateCount, slices);
@@ -47,18 +47,21 @@ void main() {
     uint number = queue[params.maxItems * 2u - 1u - entry];
     Fetched f = fetchNumber(number, item);
     ScreenTriangle t;
-    uint fate = classifyFetched(f, t);
+    Corners fine;
+    uint fate = classifyCandidate(f, t, fine);
     open = kNonOpaque && isNonOpaque(f.flags);
     if (open) {
       uvec2 at = placeOfNumber(number);
       nonOpaque.flags = f.flags;
       nonOpaque.plane = fetchTexturePlane(f, at.x, at.y, textureOrigin(t, fate, f.camera));
     }
-    if (fate == kWhole) add(t, f.id, f.camera);
-    if (fate != kClipped) continue;
+    if (fate != kClipped) {
+      add(t, fine, f.id, f.camera);
+      continue;
+    }
     ScreenPolygon polygon;
     if (clipTriangle(f.a, f.b, f.c, gridOf(f.camera), f.mirrored, f.twoSided, polygon) != kClipped) continue;
     for (int k = 0; k + 2 < polygon.count; ++k)
-      if (fanPiece(polygon, k, gridOf(f.camera), t)) add(t, f.id, f.camera);
+      if (fanPiece(polygon, k, gridOf(f.camera), t)) add(t, unitCorners(t), f.id, f.camera);
   }
 }

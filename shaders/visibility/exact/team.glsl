@@ -16,7 +16,7 @@ uvec4 fromLane(uvec4 v, uint lane) { return subgroupShuffle(v, lane); }
 #else
 shared uint joined;
 shared uint sums[kBatch];
-shared uvec4 told[kBatch];
+shared uvec4 told[kBatch + 1u]; // one more, as `opens` has
 
 void sync() { barrier(); }
 

@@ -11,7 +11,7 @@ void show(uint id) {
   atomicAdd(counters.unresolved, 1u);
 }
 
-/// Counts a candidate of a tile; the how manieth of its kind it is.
+/// Counts a candidate of a tile. Returns its index among those of its kind.
 uint countIn(uint tile, bool seen) { return atomicAdd(slots[tileWord(tile) + (seen ? 1u : 0u)], 1u); }
 
 void enter(uint candidate, bool seen, uint tile, uint place, uint pair) {

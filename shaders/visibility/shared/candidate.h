@@ -81,6 +81,23 @@ GPGP_FN uvec2 touchedPixels(ScreenTriangle t, ivec4 bounds, ivec2 first) {
   return mask;
 }
 
+/// All of a triangle but its bounds.
+GPGP_FN ScreenTriangle triangleOf(Candidate c) {
+  ScreenTriangle t;
+  t.bounds = ivec4(0, 0, 0, 0);
+  t.p0 = nearestUnit(c.p0);
+  t.p1 = nearestUnit(c.p1);
+  t.p2 = nearestUnit(c.p2);
+  t.z0 = c.z0;
+  t.dz1 = c.dz1;
+  t.dz2 = c.dz2;
+  t.zMin = c.zMin;
+  t.zMax = c.zMax;
+  GPGP_PRECISE float inverseArea = c.inverseArea * float(kFine * kFine);
+  t.inverseArea = inverseArea;
+  return t;
+}
+
 GPGP_FN float withinDepths(ScreenTriangle t, float z) {
   float held = clamp(z, t.zMin, t.zMax);
   return held < 1.17549435e-38f ? 0.0f : held;
@@ -95,23 +112,25 @@ GPGP_FN vec2 depthSlope(ScreenTriangle t) {
   return vec2(alongX, alongY);
 }
 
-/// The depth of a triangle's plane at a point within a pixel of its box, and what rounding may add to it: slivers'
+/// The depth of a candidate's plane at a point within a pixel of its box, and what rounding may add to it: slivers'
 /// planes are steep.
-GPGP_FN vec2 planeDepth(ScreenTriangle t, bool compact, ivec2 point) {
-  ivec2 s1 = edgeSlope(t.p2, t.p0);
-  ivec2 s2 = edgeSlope(t.p0, t.p1);
-  float weight1;
-  float weight2;
-  if (compact) {
-    weight1 = compactToFloat(edgeCompact(t.p2, s1, point));
-    weight2 = compactToFloat(edgeCompact(t.p0, s2, point));
-  } else {
-    weight1 = wideToFloat(edgeWide(t.p2, s1, point));
-    weight2 = wideToFloat(edgeWide(t.p0, s2, point));
-  }
-  GPGP_PRECISE float z = t.z0 + (weight1 * t.dz1 + weight2 * t.dz2) * t.inverseArea;
-  GPGP_PRECISE float rounding = (abs(weight1 * t.dz1) + abs(weight2 * t.dz2)) * t.inverseArea * 4.8e-7f;
+GPGP_FN vec2 planeDepth(Candidate c, ivec2 point) {
+  ivec2 fine = point * kFine;
+  float weight1 = widerToFloat(edgeWide(c.p2, edgeSlope(c.p2, c.p0), fine));
+  float weight2 = widerToFloat(edgeWide(c.p0, edgeSlope(c.p0, c.p1), fine));
+  GPGP_PRECISE float z = c.z0 + (weight1 * c.dz1 + weight2 * c.dz2) * c.inverseArea;
+  GPGP_PRECISE float rounding = (abs(weight1 * c.dz1) + abs(weight2 * c.dz2)) * c.inverseArea * 4.8e-7f;
   return vec2(z, rounding);
+}
+
+/// How the depth of its plane changes by unit.
+GPGP_FN vec2 planeSlope(Candidate c) {
+  ivec2 s1 = edgeSlope(c.p2, c.p0);
+  ivec2 s2 = edgeSlope(c.p0, c.p1);
+  GPGP_PRECISE float inverse = c.inverseArea * 32.0f;
+  GPGP_PRECISE float alongX = (float(s1.x) * c.dz1 + float(s2.x) * c.dz2) * inverse;
+  GPGP_PRECISE float alongY = (float(s1.y) * c.dz1 + float(s2.y) * c.dz2) * inverse;
+  return vec2(alongX, alongY);
 }
 
 /// The part of a triangle's box that lies in a pixel, and its plane there.
@@ -124,14 +143,15 @@ struct Footing {
   float reach; ///< how far from it the depths in the box lie at most
 };
 
-GPGP_FN Footing footingOf(ScreenTriangle t, bool compact, ivec2 pixel) {
+GPGP_FN Footing footingOf(Candidate c, ivec2 pixel) {
+  ScreenTriangle t = triangleOf(c);
   Footing f;
   f.low = max(min(t.p0, min(t.p1, t.p2)), pixel * 256);
   f.high = min(max(t.p0, max(t.p1, t.p2)), pixel * 256 + 255);
   f.middle = ivec2((f.low.x + f.high.x) >> 1, (f.low.y + f.high.y) >> 1);
-  vec2 depth = planeDepth(t, compact, f.middle);
+  vec2 depth = planeDepth(c, f.middle);
   f.depth = depth.x;
-  f.slope = depthSlope(t);
+  f.slope = planeSlope(c);
   GPGP_PRECISE float reach =
       (abs(f.slope.x) * float(f.high.x - f.low.x + 1) + abs(f.slope.y) * float(f.high.y - f.low.y + 1)) * 0.5f +
       depth.y;
@@ -148,8 +168,8 @@ GPGP_FN uint farthestKey(ScreenTriangle t, Footing f, bool reversed) {
   GPGP_PRECISE float farthest = reversed ? f.depth - f.reach : f.depth + f.reach;
   return depthKey(withinDepths(t, farthest), reversed);
 }
-GPGP_FN uint nearestKey(ScreenTriangle t, bool compact, ivec2 pixel, bool reversed) {
-  return nearestKey(t, footingOf(t, compact, pixel), reversed);
+GPGP_FN uint nearestKey(Candidate c, ivec2 pixel, bool reversed) {
+  return nearestKey(triangleOf(c), footingOf(c, pixel), reversed);
 }
 
 /// By how much an edge function, in pixels, falls at most from a pixel's centre to its border.
@@ -189,38 +209,23 @@ GPGP_FN uint fillKey(ScreenTriangle t, float z, bool reversed) {
 /// x per y along an edge; 0 for horizontal ones.
 GPGP_FN float edgeLean(ivec2 u, ivec2 v) { return u.y == v.y ? 0.0f : divide(float(v.x - u.x), float(v.y - u.y)); }
 
-GPGP_FN Candidate makeCandidate(ScreenTriangle t, uint id) {
+/// fine: its corners, in order, in parts of kFine to a unit.
+GPGP_FN Candidate makeCandidate(ScreenTriangle t, Corners fine, uint id) {
   Candidate c;
-  c.p0 = t.p0;
-  c.p1 = t.p1;
-  c.p2 = t.p2;
+  c.p0 = fine.p0;
+  c.p1 = fine.p1;
+  c.p2 = fine.p2;
   c.z0 = t.z0;
   c.dz1 = t.dz1;
   c.dz2 = t.dz2;
   c.zMin = t.zMin;
   c.zMax = t.zMax;
-  c.inverseArea = t.inverseArea;
-  c.slope0 = edgeLean(t.p1, t.p2);
-  c.slope1 = edgeLean(t.p2, t.p0);
-  c.slope2 = edgeLean(t.p0, t.p1);
+  c.inverseArea = reciprocal(widerToFloat(twiceArea(c.p0, c.p1, c.p2)));
+  c.slope0 = edgeLean(c.p1, c.p2);
+  c.slope1 = edgeLean(c.p2, c.p0);
+  c.slope2 = edgeLean(c.p0, c.p1);
   c.id = id;
   return c;
-}
-
-/// All of a triangle but its bounds.
-GPGP_FN ScreenTriangle triangleOf(Candidate c) {
-  ScreenTriangle t;
-  t.bounds = ivec4(0, 0, 0, 0);
-  t.p0 = c.p0;
-  t.p1 = c.p1;
-  t.p2 = c.p2;
-  t.z0 = c.z0;
-  t.dz1 = c.dz1;
-  t.dz2 = c.dz2;
-  t.zMin = c.zMin;
-  t.zMax = c.zMax;
-  t.inverseArea = c.inverseArea;
-  return t;
 }
 
 GPGP_FN bool touches(ScreenTriangle t, bool compact, ivec2 pixel) {
@@ -268,16 +273,21 @@ GPGP_FN float stepOf(float v) { return uintBitsToFloat(floatBitsToUint(v) & ~63u
 
 /// Adds an edge. Its line is computed from its upper corner, so that both triangles at an edge have the same one but
 /// for their margins, in quarters of a unit, and leave no sample out.
-GPGP_FN void addEdge(GPGP_INOUT(Outline) o, ivec2 u, ivec2 v, float slope, ivec2 first, int margin) {
+GPGP_FN void addEdge(GPGP_INOUT(Outline) o, ivec2 u, ivec2 v, float slope, ivec2 first, float margin) {
   if (u.y == v.y) { // those above it are outside, or those below it
     o.isThirdLeft = u.x < v.x;
-    o.third = vec2(float((u.y - first.y - 2) * 4 + (o.isThirdLeft ? -margin : margin)), -16.0f);
+    GPGP_PRECISE float row = float(u.y - (first.y + 2) * kFine) + (o.isThirdLeft ? -margin : margin) * 32.0f;
+    o.third = vec2(row, -128.0f);
     return;
   }
-  ivec2 top = (u.y < v.y ? u : v) - first;
+  ivec2 corner = u.y < v.y ? u : v;
+  ivec2 unit = nearestUnit(corner);
+  ivec2 top = unit - first;
+  ivec2 rest = corner - unit * kFine;
   bool isLeft = u.y > v.y; // upwards: bounds from the left, as the triangle is clockwise as seen
-  GPGP_PRECISE float beyond = float(isLeft ? -margin : margin) * 0.0625f * (1.0f + abs(slope)); // in columns
-  GPGP_PRECISE float start = (float(top.x - 2) + float(2 - top.y) * slope) * 0.25f + 0.498046875f + beyond;
+  GPGP_PRECISE float beyond = (isLeft ? -margin : margin) * 0.25f * (1.0f + abs(slope)); // in columns
+  GPGP_PRECISE float within = (float(rest.x) - float(rest.y) * slope) * 0.0078125f;
+  GPGP_PRECISE float start = (float(top.x - 2) + float(2 - top.y) * slope) * 0.25f + 0.498046875f + within + beyond;
   vec2 before = isLeft ? o.left : o.right;
   if (before.x != kNoEdge) {
     o.third = before;
@@ -290,19 +300,34 @@ GPGP_FN void addEdge(GPGP_INOUT(Outline) o, ivec2 u, ivec2 v, float slope, ivec2
     o.right = line;
 }
 
-GPGP_FN Outline outlineOf(Candidate c, ivec2 pixel) {
+/// What a candidate owns beyond its edges, in units, so that nothing shows through T-junctions. Clipped pieces, whose
+/// corners are whole units, as elsewhere. Others are as fine as their coordinates: of those, with the rounding of clip
+/// coordinates in a viewport of `extent` pixels, a sixteenth of a unit up to 2048 pixels; of small ones half as much.
+GPGP_FN float outlineMargin(Candidate c, float extent) {
+  ivec2 all_ = c.p0 | c.p1 | c.p2;
+  if (((all_.x | all_.y) & (kFine - 1)) == 0) return float(marginOf(triangleOf(c), kMargin)) * 0.25f;
+  int around = spanOf(edgeSlope(c.p1, c.p2)) + spanOf(edgeSlope(c.p2, c.p0)) + spanOf(edgeSlope(c.p0, c.p1));
+  GPGP_PRECISE float inverseRadius = float(around) * c.inverseArea * float(kFine); // of what the grid may have turned
+  GPGP_PRECISE float most = max(extent * 3.0517578125e-5f, 0.0625f);
+  GPGP_PRECISE float half_ = most * 0.5f;
+  return inverseRadius <= 0.125f ? most : inverseRadius <= 1.0f ? half_ : 0.0f;
+}
+
+/// extent: of the viewport, the greater of width and height in pixels.
+GPGP_FN Outline outlineOf(Candidate c, ivec2 pixel, float extent) {
   Outline o;
   ivec2 first = pixel * 256;
   o.left = vec2(kNoEdge, 0.0f); // each triangle has both
   o.right = vec2(kNoEdge, 0.0f);
   o.third = vec2(kNoEdge, 0.0f);
   o.isThirdLeft = true;
-  int margin = marginOf(triangleOf(c), kMargin);
+  float margin = outlineMargin(c, extent);
   addEdge(o, c.p1, c.p2, c.slope0, first, margin);
   addEdge(o, c.p2, c.p0, c.slope1, first, margin);
   addEdge(o, c.p0, c.p1, c.slope2, first, margin);
-  o.rowBegin = clamp((min(c.p0.y, min(c.p1.y, c.p2.y)) - first.y + 1) >> 2, 0, 64);
-  o.rowEnd = clamp((max(c.p0.y, max(c.p1.y, c.p2.y)) - first.y + 1) >> 2, 0, 64);
+  ScreenTriangle t = triangleOf(c);
+  o.rowBegin = clamp((min(t.p0.y, min(t.p1.y, t.p2.y)) - first.y + 1) >> 2, 0, 64);
+  o.rowEnd = clamp((max(t.p0.y, max(t.p1.y, t.p2.y)) - first.y + 1) >> 2, 0, 64);
   return o;
 }
 

@@ -136,6 +136,19 @@ uint classifyFetched(Fetched f, out ScreenTriangle triangle) {
   return classify(f.a, f.b, f.c, gridOf(f.camera), f.mirrored, f.twoSided, triangle);
 }
 
+/// The same for one that exact sampling has listed: kClipped, or else it and its corners, in parts of kFine to a unit.
+uint classifyCandidate(Fetched f, out ScreenTriangle triangle, out Corners fine) {
+  uint fate = classifyFetched(f, triangle);
+  fine = unitCorners(triangle);
+  if (fate == kWhole) fine = fineCorners(triangle, f.a, f.b, f.c, gridOf(f.camera));
+  if (fate == kBackFacing) {
+    bool swaps;
+    facesFinely(f.a, f.b, f.c, gridOf(f.camera), f.mirrored, f.twoSided, fine, swaps);
+    triangle = makeSliver(f.a, f.b, f.c, swaps, fine);
+  }
+  return fate;
+}
+
 /// The entry of a triangle's number among all chunks, of which each has room for kChunk, and the triangle's place in
 /// its draw.
 uvec2 placeOfNumber(uint number) {

@@ -58,6 +58,15 @@ GPGP_FN float wideToFloat(Wide a) {
   return sum;
 }
 
+/// A float of a number below 2^62 in magnitude; two roundings.
+GPGP_FN float widerToFloat(Wide a) {
+  GPGP_PRECISE float top = float(a.high >> 8);
+  GPGP_PRECISE float middle = float(uint(a.high & 255) << 16u | a.low >> 16u);
+  GPGP_PRECISE float bottom = float(a.low & 0xffffu);
+  GPGP_PRECISE float sum = (top * 16777216.0f + middle) * 65536.0f + bottom;
+  return sum;
+}
+
 GPGP_CONST int kSaturated = 1 << 30;
 
 /// floor(a / 2^shift), held within +-2^30; shift is 0 to 8.

@@ -214,7 +214,7 @@ GPGP_CONST uint kHasFalseNegatives = 8u;
 /// A triangle, or a piece of a clipped one, in a pixel's list. Behind one that is not opaque lies what tells where it
 /// is, in the room of another candidate.
 struct Candidate {
-  ivec2 p0; // ScreenTriangle
+  ivec2 p0; // ScreenTriangle, but corners in parts of kFine to a unit
   ivec2 p1;
   ivec2 p2;
   float z0;
@@ -222,8 +222,8 @@ struct Candidate {
   float dz2;
   float zMin;
   float zMax;
-  float inverseArea;
-  float slope0; // x per y along the edges p1 p2, p2 p0, p0 p1; 0 for horizontal ones
+  float inverseArea; // in such parts as well
+  float slope0;      // x per y along the edges p1 p2, p2 p0, p0 p1; 0 for horizontal ones
   float slope1;
   float slope2;
   uint id;
@@ -240,10 +240,10 @@ struct Surface {
 GPGP_CONST uint kIsNonOpaque = 0x80000000u; ///< beside a candidate's triangle number
 GPGP_CONST uint kPairBytes = 8u;
 GPGP_CONST uint kTileWords = 3u;
-GPGP_CONST uint kTilePairWords = 3u;        ///< tile, candidate, the how manieth of its tile and kind, seen or not
-GPGP_CONST uint kNoTile = 0xffffffffu;      ///< of a pair that found no room
-GPGP_CONST uint kIsSeen = 0x80000000u;      ///< beside a candidate's number in its pairs: at some pixel's centre
-GPGP_CONST uint kQuarters = 4u;             ///< of a pixel, each of 4 x 4 samples
+GPGP_CONST uint kTilePairWords = 3u;   ///< tile, candidate, index within the list of its tile and kind, seen or not
+GPGP_CONST uint kNoTile = 0xffffffffu; ///< of a pair that found no room
+GPGP_CONST uint kIsSeen = 0x80000000u; ///< beside a candidate's number in its pairs: at some pixel's centre
+GPGP_CONST uint kQuarters = 4u;        ///< of a pixel, each of 4 x 4 samples
 GPGP_CONST uint kGapWords = 2u + kQuarters; ///< of a pixel: its covered samples; behind all, quarters' depths
 
 /// GPU counters; the first kReportWords are the report.

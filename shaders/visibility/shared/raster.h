@@ -85,6 +85,31 @@ GPGP_FN int snap(float normalised, int pixels) {
   return clamp(int(position), limit - kGuard * limit, limit + kGuard * limit);
 }
 
+/// The same to a sixteenth of that, in parts of kFine to a unit: the middle of the sixteenth that it lies in, so that
+/// nearestUnit() of it is what snap() says.
+GPGP_CONST int kFine = 32;
+GPGP_FN int snapFinely(float normalised, int pixels) {
+  GPGP_PRECISE float half_ = float(pixels) * 2048.0f;
+  GPGP_PRECISE float position = floor(normalised * half_ + (half_ + 8.0f));
+  return int(position) * 2 + 1 - kFine / 2;
+}
+GPGP_FN ivec2 nearestUnit(ivec2 fine) { return (fine + kFine / 2) >> 5; }
+
+struct Corners {
+  ivec2 p0;
+  ivec2 p1;
+  ivec2 p2;
+};
+
+/// The corners of a triangle on the grid, in its order, in parts of kFine to a unit.
+GPGP_FN Corners unitCorners(ScreenTriangle t) {
+  Corners r;
+  r.p0 = t.p0 * kFine;
+  r.p1 = t.p1 * kFine;
+  r.p2 = t.p2 * kFine;
+  return r;
+}
+
 GPGP_FN bool liesBefore(ivec2 a, ivec2 b) { return a.y < b.y || (a.y == b.y && a.x < b.x); }
 
 /// Makes a triangle from snapped vertices with positive area. Depths lie in [0, 1]. Its p0 is the uppermost vertex, of
@@ -156,8 +181,8 @@ GPGP_FN bool isSmall(ScreenTriangle t) {
 /// The edge from u to v as slopes per sub-pixel: x: along x, y: along y. Its function is positive inside.
 GPGP_FN ivec2 edgeSlope(ivec2 u, ivec2 v) { return ivec2(u.y - v.y, v.x - u.x); }
 
-/// 0 where an edge owns the points on it (top or left edge), 1 where it does not.
-GPGP_FN int edgeBias(ivec2 slope) { return slope.x > 0 || (slope.x == 0 && slope.y > 0) ? 0 : 1; }
+/// 0 where an edge owns the points on it (top or left edge, or one of no length), 1 where it does not.
+GPGP_FN int edgeBias(ivec2 slope) { return slope.x > 0 || (slope.x == 0 && slope.y >= 0) ? 0 : 1; }
 
 GPGP_FN int spanOf(ivec2 slope) { return abs(slope.x) + abs(slope.y); }
 

@@ -154,6 +154,12 @@ struct ScreenPolygon {
   bool reversedOrder;
 };
 
+/// The depth of a clip-space point, whose w can be divided by.
+GPGP_FN float depthAt(vec4 c) {
+  GPGP_PRECISE float depth = c.z * reciprocal(c.w);
+  return clamp(withoutTiny(depth), 0.0f, 1.0f);
+}
+
 /// Projects a clip-space point; false where its w cannot be divided by.
 GPGP_FN bool project(vec4 c, Grid grid, GPGP_OUT(ivec2) p, GPGP_OUT(float) z) {
   p = ivec2(0, 0);
@@ -162,10 +168,95 @@ GPGP_FN bool project(vec4 c, Grid grid, GPGP_OUT(ivec2) p, GPGP_OUT(float) z) {
   GPGP_PRECISE float inverse = reciprocal(c.w);
   GPGP_PRECISE float x = c.x * inverse;
   GPGP_PRECISE float y = c.y * inverse;
-  GPGP_PRECISE float depth = c.z * inverse;
   p = ivec2(snap(x, grid.pixels.x), snap(y, grid.pixels.y) + grid.top * 256);
-  z = clamp(withoutTiny(depth), 0.0f, 1.0f);
+  z = depthAt(c);
   return true;
+}
+
+/// Where a clip-space point lies on the grid, in parts of kFine to a unit.
+GPGP_FN ivec2 projectFinely(vec4 c, Grid grid) {
+  GPGP_PRECISE float inverse = reciprocal(c.w);
+  GPGP_PRECISE float x = c.x * inverse;
+  GPGP_PRECISE float y = c.y * inverse;
+  return ivec2(snapFinely(x, grid.pixels.x), snapFinely(y, grid.pixels.y) + grid.top * 256 * kFine);
+}
+
+/// The one of three points that lies in a unit; the last one if the others do not.
+GPGP_FN ivec2 pointIn(ivec2 unit, ivec2 a, ivec2 b, ivec2 c) {
+  if (nearestUnit(a) == unit) return a;
+  if (nearestUnit(b) == unit) return b;
+  return c;
+}
+
+/// The corners of a whole triangle, in its order, in parts of kFine to a unit: to a sixteenth, unless that turns it
+/// over.
+GPGP_FN Corners fineCorners(ScreenTriangle t, vec4 a, vec4 b, vec4 c, Grid grid) {
+  ivec2 fineA = projectFinely(a, grid);
+  ivec2 fineB = projectFinely(b, grid);
+  ivec2 fineC = projectFinely(c, grid);
+  Corners r;
+  r.p0 = pointIn(t.p0, fineA, fineB, fineC);
+  r.p1 = pointIn(t.p1, fineA, fineB, fineC);
+  r.p2 = pointIn(t.p2, fineA, fineB, fineC);
+  if (wideSign(twiceArea(r.p0, r.p1, r.p2)) <= 0) r = unitCorners(t);
+  return r;
+}
+
+/// Whether fine corners span more than rounding may make of three that lie on a line: each is off by a part, and by
+/// what floats round off in so large a viewport.
+GPGP_FN bool spansArea(Corners c, Wide area, Grid grid) {
+  ivec2 low = min(c.p0, min(c.p1, c.p2));
+  ivec2 high = max(c.p0, max(c.p1, c.p2));
+  int most = 4 + max(grid.pixels.x, grid.pixels.y) / 1024; // parts of height
+  GPGP_PRECISE float least = float(max(high.x - low.x, high.y - low.y)) * float(most);
+  return abs(widerToFloat(area)) > least;
+}
+
+/// Whether a triangle that is kBackFacing on the grid faces the viewer with fine corners, which are told in the order
+/// that gives positive area. So thin a one is nowhere a unit from what the grid makes of it.
+GPGP_FN bool facesFinely(vec4 a, vec4 b, vec4 c, Grid grid, bool mirrored, bool twoSided, GPGP_OUT(Corners) fine,
+                         GPGP_OUT(bool) swaps) {
+  fine.p0 = projectFinely(a, grid);
+  fine.p1 = projectFinely(b, grid);
+  fine.p2 = projectFinely(c, grid);
+  Wide area = twiceArea(fine.p0, fine.p1, fine.p2);
+  int turn = spansArea(fine, area, grid) ? wideSign(area) : 0;
+  swaps = turn < 0;
+  if (swaps) {
+    ivec2 second = fine.p1;
+    fine.p1 = fine.p2;
+    fine.p2 = second;
+  }
+  return turn != 0 && (twoSided || (turn > 0) == mirrored);
+}
+
+/// Such a triangle on the grid, where it has no area. fine: its corners, in its order.
+GPGP_FN ScreenTriangle makeSliver(vec4 a, vec4 b, vec4 c, bool swaps, GPGP_INOUT(Corners) fine) {
+  vec4 second = swaps ? c : b;
+  vec4 third = swaps ? b : c;
+  float z0 = depthAt(a);
+  float z1 = depthAt(second);
+  float z2 = depthAt(third);
+  ScreenTriangle t = noTriangle();
+  // As in makeTriangle().
+  bool isSecond = liesBefore(fine.p1, fine.p0);
+  bool isThird = liesBefore(fine.p2, isSecond ? fine.p1 : fine.p0);
+  Corners turned = fine;
+  turned.p0 = isThird ? fine.p2 : isSecond ? fine.p1 : fine.p0;
+  turned.p1 = isThird ? fine.p0 : isSecond ? fine.p2 : fine.p1;
+  turned.p2 = isThird ? fine.p1 : isSecond ? fine.p0 : fine.p2;
+  fine = turned;
+  t.z0 = isThird ? z2 : isSecond ? z1 : z0;
+  GPGP_PRECISE float dz1 = (isThird ? z0 : isSecond ? z2 : z1) - t.z0;
+  GPGP_PRECISE float dz2 = (isThird ? z1 : isSecond ? z0 : z2) - t.z0;
+  t.dz1 = dz1;
+  t.dz2 = dz2;
+  t.zMin = min(z0, min(z1, z2));
+  t.zMax = max(z0, max(z1, z2));
+  t.p0 = nearestUnit(fine.p0);
+  t.p1 = nearestUnit(fine.p1);
+  t.p2 = nearestUnit(fine.p2);
+  return t;
 }
 
 /// Sorts a triangle's clip coordinates into one of the cases above; for kWhole makes it, unless it is turned away.

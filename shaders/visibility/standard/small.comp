@@ -77,6 +77,12 @@ void main() {
       }
       if (params.method == kExact) {
         ivec4 bounds = ivec4(0);
+        if (fate == kBackFacing && !open) { // exact sampling has finer corners
+          Corners fine;
+          bool swaps;
+          if (facesFinely(f.a, f.b, f.c, gridOf(f.camera), f.mirrored, f.twoSided, fine, swaps))
+            bounds = pixelBounds(nearestUnit(fine.p0), nearestUnit(fine.p1), nearestUnit(fine.p2), gridOf(f.camera));
+        }
         if (fate == kWhole) bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
         bool reaches = bounds.x < bounds.z && bounds.y < bounds.w;
         onSamples = onSamples || reaches;

@@ -1,4 +1,5 @@
 // `gpgp info`: the devices, what gpgp needs and could use of one, and which optional paths that means.
+#include "cli/info/pipelines.h"
 #include "cli/shared/command.h"
 #include "host/device.h"
 
@@ -134,8 +135,18 @@ Outcome info(const CommonOptions& options) {
 
 Work addInfo(CLI::App& app) {
   CLI::App* command = app.add_subcommand("info", "What this machine offers, and what gpgp would use");
-  command->footer("\nExamples:\n  gpgp info\n  gpgp info --device 1\n  gpgp info --json | jq .features");
-  return info;
+  auto pipelines = std::make_shared<bool>(false);
+  command->add_flag(
+      "--pipelines", *pipelines,
+      "Instead: the pipelines of every kind of recorder, their SPIR-V and how long each takes to make, one "
+      "after another. What the driver finds in its own cache on disk costs little: empty that first");
+  command->footer("\nExamples:\n  gpgp info\n  gpgp info --device 1\n  gpgp info --json | jq .features\n"
+                  "  gpgp info --pipelines");
+  return [pipelines](const CommonOptions& options) {
+    if (!*pipelines) return info(options);
+    host::HeadlessDevice device(host::DeviceOptions{.device = options.device, .validation = options.validate});
+    return listPipelines(device);
+  };
 }
 
 } // namespace gpgp::cli

@@ -41,6 +41,8 @@ public:
 
   /// Throws Failure with gpgp's own message where result is an error; returns it otherwise.
   GpgpResult check(GpgpResult result, const char* what);
+  /// Forgets an error that was expected.
+  void dropError() { lastError_.clear(); }
   /// The same for what creates something.
   template <class T> T take(Result<T> result, const char* what) {
     check(result.code(), what);

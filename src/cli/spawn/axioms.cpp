@@ -357,6 +357,7 @@ public:
     for (const char* needed : {"x", "z"})
       if (!placed && !has(needed)) errors_.error(row_.place, std::string("an axiom needs a value for ") + needed);
     if (isRead("seed")) axiom.seed = seed();
+    if (defaults_.starts.size() == 1) axiom.start = defaults_.starts[0]; // of --start
     if (isRead("rule"))
       axiom.start = rule();
     else if (has("shape") && !has("rule"))
@@ -499,12 +500,15 @@ std::vector<GpgpAxiom> readAxioms(const std::filesystem::path& file, const std::
   std::vector<Row> rows;
   if (json) {
     const Json all = parseJson(text, errors);
+    if (defaults.interval > 0 && !(all.is_object() && all.contains("type")))
+      throw Usage("--interval is for lines of GeoJSON, which " + file.string() + " is not");
     if (all.is_array()) rows = rowsOfArray(text, all, errors);
     if (all.is_object() && all.contains("type"))
       rows = GeoJsonRows(text, defaults.interval > 0 ? defaults.interval : defaults.size[0], errors).read(all);
     else if (all.is_object())
       errors.error(placeOf(text, text.find('{')), "expected an array of axioms, [{...}, {...}], or GeoJSON");
   } else {
+    if (defaults.interval > 0) throw Usage("--interval is for lines of GeoJSON, which " + file.string() + " is not");
     rows = readCsv(text, errors);
   }
   for (const Row& row : rows)

@@ -2,8 +2,10 @@
 
 #include "cli/shared/command.h"
 #include "cli/shared/messages.h"
+#include "cli/spawn/asset_names.h"
 #include "cli/spawn/cga_source.h"
 #include "host/files.h"
+#include "spawn/cga/attributes.h"
 #include "spawn/cga/compile.h"
 
 #ifdef GPGP_WITH_VISIBILITY
@@ -23,13 +25,16 @@ namespace {
 
 using namespace spawn::cga;
 
-bool loadAsset(const std::string& path, Asset& asset, std::string& why) {
+bool loadAsset(const std::string& path, spawn::cga::Asset& asset, std::string& why) {
 #ifdef GPGP_WITH_VISIBILITY
   try {
     for (const glm::vec3& corner : worldCorners(loadModel(path))) {
       asset.indices.push_back(static_cast<uint32_t>(asset.positions.size()));
       asset.positions.push_back(corner);
     }
+    AssetNames names = assetNames(path);
+    asset.groups = std::move(names.groups);
+    asset.materials = std::move(names.materials);
     return true;
   } catch (const std::exception& error) {
     why = error.what();
@@ -41,30 +46,6 @@ bool loadAsset(const std::string& path, Asset& asset, std::string& why) {
   why = "this build reads no models";
   return false;
 #endif
-}
-
-Json annotationsOf(const AttributeInfo& attribute) {
-  Json list = Json::array();
-  for (const AttributeAnnotation& a : attribute.annotations) {
-    Json values = Json::array();
-    for (const AnnotationValue& v : a.values) {
-      const Json value = v.number ? Json(*v.number) : Json(printable(v.text));
-      values.push_back(v.name.empty() ? value : Json{{"name", printable(v.name)}, {"value", value}});
-    }
-    list.push_back({{"name", printable(a.name)}, {"values", values}});
-  }
-  return list;
-}
-
-Json attributesOf(const Program& program) {
-  Json list = Json::array();
-  for (const AttributeInfo& a : program.attributes)
-    if (!a.isConstant && !a.isMaterial)
-      list.push_back({{"name", printable(a.name)},
-                      {"file", printable(a.file)},
-                      {"line", a.place.line},
-                      {"annotations", annotationsOf(a)}});
-  return list;
 }
 
 /// Both of one program's strings and others.
@@ -98,9 +79,40 @@ void paint(const CgaOptions& options, const Derivation& derivation) {
 } // namespace
 
 namespace {
+/// The fields of the command, for the CPU.
+std::vector<WorldField> fieldsOf(const WorldFields& given, const Program& program) {
+  std::vector<WorldField> fields;
+  for (const GpgpSpawnField& field : given.all()) {
+    const auto grid = spawn::fieldGrid(field, {given.all().data(), static_cast<uint32_t>(given.all().size())});
+    if (!grid) throw Usage(std::string("--field: ") + grid.error().text);
+    fields.push_back({field.name, *grid, field.grid.values});
+  }
+  if (const std::string missing = missingField(program, fields); !missing.empty())
+    throw Usage(missing + "; --field NAME=FILE.png gives it");
+  for (const WorldField& field : fields) {
+    const bool isRead = std::any_of(program.fields.begin(), program.fields.end(),
+                                    [&](const FieldRead& read) { return read.name == field.name; });
+    const bool isAttribute =
+        std::any_of(program.attributes.begin(), program.attributes.end(),
+                    [&](const AttributeInfo& a) { return a.name == field.name && !a.isConstant && !a.isMaterial; });
+    if (!isRead && !isAttribute)
+      std::fprintf(stderr, "warning: --field %s: nothing reads this field, and no attr has its name\n",
+                   printable(field.name).c_str());
+  }
+  return fields;
+}
+
 /// Why these axioms cannot be the graph's; empty: they can.
-std::string whyNot(const CgaAxioms& start, const Program& program) {
+std::string whyNot(const CgaAxioms& start, const Program& program, const DeriveOptions& derive) {
   if (program.graph.text.empty()) return misfit(program.graph);
+  const auto isSet = [&](const std::string& name) {
+    return std::any_of(derive.attributes.begin(), derive.attributes.end(),
+                       [&](const AttributeValue& value) { return value.name == name; });
+  };
+  for (const WorldField& field : derive.fields)
+    for (const AttributeInfo& attribute : program.attributes)
+      if (attribute.name == field.name && !attribute.isConstant && !isSet(field.name))
+        return "'" + field.name + "', an attr that has its value from a field, derives on the CPU";
   for (size_t i = 0; i < start.axioms.size(); ++i) {
     const Axiom& axiom = start.axioms[i];
     const std::string where = axiom.where.empty() ? std::string() : axiom.where + ": ";
@@ -139,10 +151,21 @@ Outcome spawnCga(const CgaOptions& options, const CommonOptions& common) {
   const std::optional<ErrorsShown> wrong = print(compiled);
   if (!program) throw wrong.value();
   checkAttributes(derive.attributes, *program);
+  if (options.listsAttributes) {
+    Outcome listed;
+    listed.text = attributesText(*program);
+    listed.json = {{"grammar", options.file},
+                   {"start", program->rules[program->start].name},
+                   {"attributes", attributesOf(*program)}};
+    return listed;
+  }
+  WorldFields fields(options.fields);
+  derive.fields = fieldsOf(fields, *program);
   std::vector<std::string> names;
   for (const RuleInfo& rule : program->rules)
     if (rule.parameters == 0) names.push_back(rule.name);
   const CgaAxioms start = cgaAxioms(options, names);
+  derive.origin = start.origin;
 
   std::optional<Program> firstRule;
   if (!start.rules.empty() && !start.rules[0].empty() && !isCpu) {
@@ -152,12 +175,12 @@ Outcome spawnCga(const CgaOptions& options, const CommonOptions& common) {
     firstRule = spawn::cga::compile(text, first, same);
   }
   const Program& graphed = firstRule ? *firstRule : *program;
-  std::string why = isCpu ? "--device cpu" : whyNot(start, graphed);
+  std::string why = isCpu ? "--device cpu" : whyNot(start, graphed, derive);
   if (why.empty() && (options.maxDepth || options.maxShapes || options.maxFaces || options.maxVertices ||
                       options.maxGeometry || options.maxWork))
     why = "--max-depth, --max-shapes, --max-faces, --max-vertices, --max-geometry and --max-work are for the CPU";
   std::optional<GpuDerivation> gpu;
-  if (why.empty()) gpu = deriveOnGpu(options, common, graphed, start.axioms, derive);
+  if (why.empty()) gpu = deriveOnGpu(options, common, graphed, start.axioms, derive, fields);
   if (why.empty() && !gpu) why = options.file + ": rules nest in themselves without end, or too deep for the GPU";
   if (isGpu && !gpu) throw Failure(why + "; without --device it derives on the CPU");
   const bool onGpu = gpu.has_value();

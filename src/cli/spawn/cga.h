@@ -1,6 +1,7 @@
 // `gpgp spawn` of .cga files: compiles, derives on the CPU, and says what came out.
 #pragma once
 #include "cli/shared/command.h"
+#include "cli/spawn/fields.h"
 #include "cli/spawn/scene_picture.h"
 #include "spawn/cga/derive.h"
 
@@ -11,6 +12,8 @@ namespace gpgp::cli {
 struct CgaOptions {
   std::string file, start, style;
   std::vector<std::string> attributes;  ///< NAME=VALUE
+  std::vector<std::string> fields;      ///< as WorldFields takes them
+  bool listsAttributes = false;         ///< and derives nothing
   uint32_t axioms = 0, seed = 1;        ///< axioms 0: one
   std::array<float, 3> size{20, 0, 20}; ///< of rectangles; y is not used
   float spacing = 0;
@@ -44,18 +47,25 @@ struct GpuDerivation {
 std::optional<GpuDerivation> deriveOnGpu(const CgaOptions& options, const CommonOptions& common,
                                          const spawn::cga::Program& program,
                                          const std::vector<spawn::cga::Axiom>& axioms,
-                                         const spawn::cga::DeriveOptions& derive);
+                                         const spawn::cga::DeriveOptions& derive, WorldFields& fields);
 /// The axiom for a graph.
 GpgpAxiom graphAxiom(const spawn::cga::Axiom& axiom, uint32_t id);
 
 // --- cga_axioms.cpp ---
 struct CgaAxioms {
   std::vector<spawn::cga::Axiom> axioms;
-  std::vector<std::string> rules; ///< of each axiom; empty: the start rule
+  std::vector<std::string> rules;                    ///< of each axiom; empty: the start rule
+  std::optional<spawn::cga::GeographicPlace> origin; ///< of the world, where the file says where it lies
 };
 /// A grid of rectangles, or what the axiom file says: CSV or JSON as readAxioms() takes them, or GeoJSON. names: rules
 /// that an axiom can start with.
 CgaAxioms cgaAxioms(const CgaOptions& options, const std::vector<std::string>& names);
+
+// --- cga_attributes.cpp ---
+/// All attributes of a program: values, ranges, choices, groups, annotations.
+Json attributesOf(const spawn::cga::Program& program);
+/// The same for people.
+std::string attributesText(const spawn::cga::Program& program);
 
 // --- cga_gltf.cpp ---
 /// A node for each rule that shapes end in, a primitive for each of its colours.

@@ -1,6 +1,7 @@
 // Start shapes of .cga files: rectangles on a grid, rows of the axiom files that all grammars take, and polygons of
 // GeoJSON files.
 #include "cli/shared/command.h"
+#include "cli/shared/messages.h"
 #include "cli/spawn/axioms.h"
 #include "cli/spawn/cga.h"
 #include "cli/spawn/grammar_source.h"
@@ -35,7 +36,8 @@ Axiom rectangle(const GpgpAxiom& from, const std::string& where) {
 
 /// A polygon that is a level rectangle becomes one, with the scope that the polygon would have: x along its first edge.
 void toRectangle(Axiom& axiom) {
-  if (axiom.points.size() != 4 || axiom.loopSizes.size() != 1 || !axiom.streetWidths.empty()) return;
+  if (axiom.points.size() != 4 || axiom.loopSizes.size() != 1) return;
+  if (!axiom.streetWidths.empty() || !axiom.edgeAttributes.empty()) return; // which belong to its edges
   const auto& p = axiom.points;
   const glm::vec3 x = p[1] - p[0], z = p[0] - p[3];
   const float width = glm::length(x), depth = glm::length(z), rounding = 1e-4f * (width + depth);
@@ -117,6 +119,7 @@ private:
   void polygon(const Json& rings, const Json& properties) {
     if (!rings.is_array() || rings.empty()) fail("a polygon needs an outline");
     Axiom axiom;
+    std::vector<bool> turned; // rings
     for (const Json& ring : rings) {
       if (!ring.is_array()) fail("a polygon's ring is an array of places");
       std::vector<glm::dvec3> points;
@@ -139,10 +142,12 @@ private:
       }
       const bool turns = (area < 0) == axiom.loopSizes.empty();
       if (turns) std::reverse(points.begin(), points.end());
+      turned.push_back(turns);
       if (axiom.loopSizes.empty()) streets(properties, points.size(), turns, axiom);
       axiom.loopSizes.push_back(static_cast<uint32_t>(points.size()));
       places_.insert(places_.end(), points.begin(), points.end());
     }
+    edges(properties, turned, axiom);
     axiom.seed = options_.seed + static_cast<uint32_t>(result_.axioms.size());
     axiom.where = where();
     std::string rule;
@@ -157,6 +162,35 @@ private:
       fail("the grammar has no rule \"" + rule.substr(0, 60) + "\" without parameters");
     result_.axioms.push_back(std::move(axiom));
     result_.rules.push_back(std::move(rule));
+  }
+
+  /// "/edgeattr/NAME": an array of a value for each edge of the outline, or of all rings. turned: those that were
+  /// reversed.
+  void edges(const Json& properties, const std::vector<bool>& turned, Axiom& axiom) const {
+    size_t all = 0;
+    for (const uint32_t size : axiom.loopSizes) all += size;
+    for (const auto& [key, list] : properties.items()) {
+      constexpr std::string_view kPrefix = "/edgeattr/";
+      if (!key.starts_with(kPrefix)) continue;
+      const std::string name = printable(key);
+      if (!list.is_array() || (list.size() != axiom.loopSizes[0] && list.size() != all))
+        fail("\"" + name + "\" is an array of a value for each of the " + std::to_string(axiom.loopSizes[0]) +
+             " edges of the outline, or of all rings");
+      spawn::cga::EdgeAttribute attribute{key.substr(kPrefix.size()), {}, false};
+      size_t first = 0;
+      for (size_t ring = 0; ring < axiom.loopSizes.size() && first < list.size(); ++ring) {
+        const size_t count = axiom.loopSizes[ring];
+        for (size_t i = 0; i < count; ++i) {
+          const Json& value = list[first + (turned[ring] ? (2 * count - 2 - i) % count : i)];
+          if (!value.is_string() && !value.is_number() && !value.is_boolean())
+            fail("\"" + name + "\" holds numbers, strings, true and false");
+          attribute.isString = attribute.isString || value.is_string();
+          attribute.values.push_back(value.is_string() ? value.get<std::string>() : value.dump());
+        }
+        first += count;
+      }
+      axiom.edgeAttributes.push_back(std::move(attribute));
+    }
   }
 
   /// "streetWidth": of all edges of the outline, or an array of one for each; turned: the outline was reversed.
@@ -187,8 +221,9 @@ private:
       if (std::fabs(low.x) > 360 || std::fabs(high.x) > 360 || std::fabs(low.y) > 90 || std::fabs(high.y) > 90)
         throw Failure(options_.axiomFile + ": these are not longitudes and latitudes; leave --geographic out");
       origin = glm::dvec2(low + high) * 0.5;
-      scale.y = 111319.490793; // metres of a degree
+      scale.y = spawn::cga::kMetresOfADegree;
       scale.x = scale.y * std::cos(origin.y * 0.017453292519943295);
+      result_.origin = spawn::cga::GeographicPlace{origin.x, origin.y};
     } else if (std::max(high.x - low.x, high.y - low.y) < 0.05) {
       std::fprintf(stderr, "%s: warning: all polygons lie within 5 cm; --geographic takes coordinates as degrees\n",
                    options_.axiomFile.c_str());

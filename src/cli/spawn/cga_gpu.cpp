@@ -141,14 +141,17 @@ GpgpAxiom graphAxiom(const Axiom& axiom, uint32_t id) {
 }
 
 std::optional<GpuDerivation> deriveOnGpu(const CgaOptions& options, const CommonOptions& common, const Program& program,
-                                         const std::vector<Axiom>& axioms, const spawn::cga::DeriveOptions& derive) {
+                                         const std::vector<Axiom>& axioms, const spawn::cga::DeriveOptions& derive,
+                                         WorldFields& fields) {
   const BakedGraph grammar = bakeText(options.file, program.graph.text);
   std::vector<GpgpAxiom> start;
   for (const Axiom& axiom : axioms) start.push_back(graphAxiom(axiom, static_cast<uint32_t>(start.size())));
   // The CPU evaluator of graphs, with as deep rules as there are.
-  const std::optional<uint32_t> depth = depthOf(grammar.words, start);
+  fields.bind(grammar.graph);
+  const World world{nullptr, &fields.bound()};
+  const std::optional<uint32_t> depth = depthOf(grammar.words, start, world);
   if (!depth) return std::nullopt;
-  const Reference reference = evaluate(grammar.words, start, std::max(*depth, 64u), nullptr, options.file);
+  const Reference reference = evaluate(grammar.words, start, std::max(*depth, 64u), nullptr, options.file, world);
   CommonOptions chosen = common;
   if (chosen.device == "gpu") chosen.device.clear(); // whichever is the default
   Session session(chosen);
@@ -172,6 +175,8 @@ std::optional<GpuDerivation> deriveOnGpu(const CgaOptions& options, const Common
   DeriverOptions deriverOptions;
   deriverOptions.maxDepth = std::max(*depth, 64u);
   deriverOptions.expected = reference.result.terminals;
+  fields.give(deriverOptions);
+  deriverOptions.kernelsOnly = !kernel.empty();
   Deriver deriver(session, grammar, slice(0), deriverOptions);
   const Grammar prepared = deriver.prepare(kernel);
   Leaves leaves(program, derive);

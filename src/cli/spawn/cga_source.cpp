@@ -2,9 +2,8 @@
 
 #include "cli/shared/command.h"
 #include "cli/shared/messages.h"
-#include "core/suggest.h"
 #include "host/files.h"
-#include "spawn/cga/program_format.h"
+#include "spawn/cga/attributes.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -49,30 +48,9 @@ std::vector<AttributeValue> attributeValues(const std::vector<std::string>& text
   return result;
 }
 
-namespace {
-/// Whether the file gives the attribute a number as it stands.
-bool isNumberBy(const Program& program, const AttributeInfo& attribute) {
-  if (!attribute.chunk) return false;
-  const uint32_t* code = &program.words[attribute.chunk + shader::kCgaChunkHeader];
-  return code[0] == shader::kCgaPushFloatCode && code[2] == shader::kCgaReturnCode;
-}
-} // namespace
-
 void checkAttributes(const std::vector<AttributeValue>& values, const Program& program) {
-  for (const AttributeValue& value : values) {
-    const auto isIt = [&](const AttributeInfo& a) { return a.name == value.name && !a.isMaterial; };
-    const auto found = std::find_if(program.attributes.begin(), program.attributes.end(), isIt);
-    if (found != program.attributes.end() && !found->isConstant) {
-      if (isNumberBy(program, *found) && !numberIn(value.text) && value.text != "true" && value.text != "false")
-        throw Usage("--attr " + value.name + ": it is a number in the file; \"" + value.text + "\" is none");
-      continue;
-    }
-    if (found != program.attributes.end()) throw Usage("--attr " + value.name + ": it is a const, which cannot be set");
-    core::Suggestion suggestion(value.name);
-    for (const AttributeInfo& a : program.attributes)
-      if (!a.isConstant && !a.isMaterial) suggestion.offer(a.name);
-    throw Usage("--attr " + value.name + ": there is no such attribute" + suggestion.text());
-  }
+  for (const AttributeValue& value : values)
+    if (const std::string why = whyNotSet(value, program); !why.empty()) throw Usage("--attr " + value.name + why);
 }
 
 bool isCga(const std::string& file) {

@@ -1,6 +1,7 @@
 // `gpgp fit`: searches for the axiom of a grammar whose derivation comes nearest to a silhouette or to sums.
 #include "cli/shared/command.h"
 #include "cli/shared/painter.h"
+#include "cli/spawn/fields.h"
 #include "cli/spawn/fit_scorer.h"
 #include "cli/spawn/grammar_source.h"
 #include "cli/spawn/measures.h"
@@ -23,7 +24,7 @@ namespace gpgp::cli {
 namespace {
 
 struct FitOptions {
-  std::vector<std::string> grammars, set, measures, vary;
+  std::vector<std::string> grammars, set, measures, vary, fields;
   std::string start, silhouette, image, compare;
   std::array<float, 3> size{1, 1, 1};
   float height = 0;
@@ -92,7 +93,7 @@ struct Wanted {
   std::vector<GpgpMeasure> measures;
   std::vector<uint32_t> bits;
   GpgpOccupancy occupancy{};
-  GpgpFitTarget target{};
+  GpgpFitTarget target = GPGP_FIT_TARGET_INIT;
 
   GpgpMeasureInfo info() const {
     return {measures.data(), static_cast<uint32_t>(measures.size()), bits.empty() ? nullptr : &occupancy};
@@ -148,9 +149,9 @@ void addSilhouette(const FitOptions& options, Wanted& wanted) {
 
 /// What the CPU measures of an axiom, and the cells that it occupies.
 GpgpAxiomMeasures onCpu(const FitOptions& options, const BakedGraph& grammar, const Wanted& wanted,
-                        const GpgpAxiom& axiom, std::vector<uint32_t>& cells) {
+                        const WorldFields& fields, const GpgpAxiom& axiom, std::vector<uint32_t>& cells) {
   return measureOnCpu(grammar.words, wanted.info(), static_cast<uint32_t>(grammar.graph.terminals.size()), axiom,
-                      options.maxDepth, nullptr, cells);
+                      options.maxDepth, {nullptr, &fields.bound()}, cells);
 }
 
 /// Cells of 4 x 4 pixels: grey where target and axiom agree, red where something is missing, blue where it is too much.
@@ -170,10 +171,9 @@ void writeComparison(const std::string& file, const Wanted& wanted, const std::v
   host::writePng(file, picture);
 }
 
-void writeImage(const FitOptions& options, const BakedGraph& grammar, const GpgpAxiom& axiom, Session& session) {
-  DeriverOptions how;
+void writeImage(const FitOptions& options, const BakedGraph& grammar, const GpgpAxiom& axiom, DeriverOptions how,
+                Session& session) {
   how.vertices = true;
-  how.maxDepth = options.maxDepth;
   Deriver deriver(session, grammar, {axiom}, how);
   deriver.fit(deriver.prepare(std::pmr::vector<uint32_t>()));
   Triangles triangles{true, std::vector<uint64_t>(grammar.graph.terminals.size())};
@@ -197,8 +197,12 @@ Outcome fit(const FitOptions& options, const CommonOptions& common) {
                 "IfCollides cannot be fitted");
 
   Session session(common);
-  FitScorer scorer(session, grammar, wanted.info(), options.maxDepth);
-  GpgpFit search{};
+  const WorldFields fields(options.fields, grammar.graph);
+  DeriverOptions how;
+  how.maxDepth = options.maxDepth;
+  fields.give(how);
+  FitScorer scorer(session, grammar, wanted.info(), how);
+  GpgpFit search = GPGP_FIT_INIT;
   search.base = axiomAt({0, 0, 0}, 0, options.size, options.seed, 0);
   search.base.start = options.start.empty() ? grammar.starts().front() : scorer.startNamed(options.start);
   search.parameters = parameters.data();
@@ -228,14 +232,14 @@ Outcome fit(const FitOptions& options, const CommonOptions& common) {
   }
 
   std::vector<uint32_t> cells;
-  const GpgpAxiomMeasures found = onCpu(options, grammar, wanted, best.axiom, cells);
+  const GpgpAxiomMeasures found = onCpu(options, grammar, wanted, fields, best.axiom, cells);
   double score = 0;
   check(gpgpScoreMeasures(&wanted.target, &found, 1, &score));
   if (session.device().isSoftware() ? score != best.score : std::abs(score - best.score) > 0.01)
     throw Failure("the device scored the best axiom " + std::to_string(best.score) + ", the CPU " +
                   std::to_string(score) + "; please report this");
   if (!options.compare.empty()) writeComparison(options.compare, wanted, cells);
-  if (!options.image.empty()) writeImage(options, grammar, best.axiom, session);
+  if (!options.image.empty()) writeImage(options, grammar, best.axiom, how, session);
   session.checkValidation();
 
   Outcome outcome;
@@ -289,6 +293,7 @@ Work addFit(CLI::App& app) {
   CLI::App* command = app.add_subcommand("fit", "Search for the axiom whose derivation is nearest to what is wanted");
   addGrammars(*command, options->grammars);
   addVariables(*command, options->set);
+  addFields(*command, options->fields);
   command->add_option("--start", options->start, "The rule to start at (default: the first axiom's)")
       ->type_name("RULE");
   command

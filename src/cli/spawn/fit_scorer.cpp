@@ -9,10 +9,9 @@ namespace {
 constexpr uint32_t kMostShapes = 1u << 22, kFirstTerminals = 131072, kRecordBytes = 96;
 }
 
-FitScorer::FitScorer(Session& session, const BakedGraph& grammar, const GpgpMeasureInfo& measures, uint32_t maxDepth,
-                     const GpgpSpawnCamera* camera)
-    : session_(session), measures_(measures), camera_(camera), occupancyWords_(spawn::gridWords(measures)),
-      maxDepth_(maxDepth) {
+FitScorer::FitScorer(Session& session, const BakedGraph& grammar, const GpgpMeasureInfo& measures,
+                     const DeriverOptions& how)
+    : session_(session), measures_(measures), how_(how), occupancyWords_(spawn::gridWords(measures)) {
   const uint32_t range = session.device().properties().limits.maxStorageBufferRange;
   mostTerminals_ = std::min(range / kRecordBytes, 1u << 24);
   maxTerminals_ = std::min(kFirstTerminals, mostTerminals_);
@@ -23,6 +22,8 @@ FitScorer::FitScorer(Session& session, const BakedGraph& grammar, const GpgpMeas
   info.size = grammar.words.size() * 4;
   grammar_ = session.take(Grammar::create(session.context(), info), "gpgpCreateGrammar");
   session.upload();
+  if (!how.fieldValues.empty())
+    fieldValues_ = host::makeBuffer(session.device(), how.fieldValues, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "fields");
   makeSpawner();
 }
 
@@ -31,7 +32,7 @@ void FitScorer::makeSpawner() {
   info.base = session_.recorderInfo("fit");
   info.maxShapes = maxShapes_;
   info.maxTerminals = maxTerminals_;
-  info.maxDepth = maxDepth_;
+  info.maxDepth = how_.maxDepth;
   info.maxHostAxioms = info.maxMeasuredAxioms = mostAxioms_;
   info.maxOccupancyWords = occupancyWords_;
   spawner_.reset();
@@ -52,7 +53,12 @@ std::vector<GpgpAxiomMeasures> FitScorer::measure(const std::vector<GpgpAxiom>& 
     info.hostAxioms = axioms.data() + all.size();
     info.axiomCount = static_cast<uint32_t>(std::min<size_t>(axioms.size() - all.size(), mostAxioms_));
     info.measures = &measures_;
-    info.camera = camera_;
+    if (how_.camera) info.camera = &*how_.camera;
+    if (!how_.fields.empty()) {
+      info.fields = how_.fields.data();
+      info.fieldCount = static_cast<uint32_t>(how_.fields.size());
+      info.fieldValues = fieldValues_.range();
+    }
     const auto measured = session_.measure(
         *spawner_, "fit", 1, [&](VkCommandBuffer commands, const GpgpFrame& frame, const GpgpRecordingInfo& base) {
           info.base = base;

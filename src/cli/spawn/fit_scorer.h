@@ -12,9 +12,8 @@ namespace gpgp::cli {
 
 class FitScorer {
 public:
-  /// measures and camera must outlive it.
-  FitScorer(Session& session, const BakedGraph& grammar, const GpgpMeasureInfo& measures, uint32_t maxDepth,
-            const GpgpSpawnCamera* camera = nullptr);
+  /// Of `how`, the depth, the camera and the fields. measures must outlive it.
+  FitScorer(Session& session, const BakedGraph& grammar, const GpgpMeasureInfo& measures, const DeriverOptions& how);
 
   /// Of each axiom. Budgets grow until all fit, or a recording takes fewer axioms. Throws Failure where not even one
   /// axiom fits.
@@ -30,12 +29,13 @@ private:
 
   Session& session_;
   const GpgpMeasureInfo measures_;
-  const GpgpSpawnCamera* camera_;
-  const uint32_t occupancyWords_, maxDepth_;
+  const DeriverOptions how_;
+  const uint32_t occupancyWords_;
   uint32_t maxTerminals_, maxShapes_ = 131072, mostAxioms_ = 4096;
   uint32_t mostTerminals_; ///< that this device binds
   Grammar grammar_;
   std::optional<Spawner> spawner_;
+  host::Buffer fieldValues_;
   uint64_t terminals_ = 0;
   uint32_t recordings_ = 0;
   double milliseconds_ = 0;

@@ -10,6 +10,7 @@
 #include "spawn/lsystem/compile.h"
 #include "spawn/lsystem/layout.h"
 #include "spawn/lsystem/reference.h"
+#include "spawn/lsystem/scanner.h"
 
 #include <gpgp/lsystem.hpp>
 
@@ -18,6 +19,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <set>
 #include <sstream>
 
@@ -33,8 +35,29 @@ constexpr GpgpAccess kRead{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEM
 const std::set<std::string> kRewriting = {"clear", "begin",  "depths", "place depths", "leaves",
                                           "nodes", "choose", "write",  "place steps"};
 
+/// What a file for a plant modeller leaves to the .v file beside it: the angle, the width and the step.
+std::string viewOf(const std::string& file, const std::string& text) {
+  std::filesystem::path view(file);
+  view.replace_extension(".v");
+  std::error_code ignored;
+  if (!spawn::lsystem::isOfPlantModeller(text) || !std::filesystem::is_regular_file(view, ignored)) return {};
+  std::istringstream lines(host::readText(view.string()));
+  std::string line, settings;
+  while (std::getline(lines, line)) {
+    const size_t colon = line.find(':');
+    if (colon == std::string::npos) continue;
+    const std::string name = line.substr(0, colon);
+    const float value = std::strtof(line.c_str() + colon + 1, nullptr);
+    if (!(value > 0 && value < 1e6f)) continue;
+    if (name == "angle increment") settings += "\nangle: " + std::to_string(value);
+    if (name == "angle factor") settings += "\nangle: " + std::to_string(360.0f / value);
+  }
+  return settings;
+}
+
 std::vector<uint32_t> compile(const LsystemOptions& options) {
-  const std::string text = host::readText(options.file);
+  std::string text = host::readText(options.file);
+  if (!spawn::lsystem::isOfLpfg(text)) text += viewOf(options.file, text);
   std::vector<spawn::lsystem::Override> overrides;
   for (const std::string& s : options.set) {
     const size_t equals = s.find('=');
@@ -45,7 +68,14 @@ std::vector<uint32_t> compile(const LsystemOptions& options) {
     overrides.push_back({std::string_view(s).substr(0, equals), value});
   }
   spawn::Diagnostics diagnostics;
-  auto words = spawn::lsystem::compile(text, overrides, diagnostics);
+  const auto read = [&](const std::string& path, std::string& into) {
+    const std::filesystem::path file = std::filesystem::path(options.file).parent_path() / path;
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) return false;
+    into = host::readText(file.string());
+    return true;
+  };
+  auto words = spawn::lsystem::compile(text, overrides, diagnostics, read);
   report(diagnostics, options.file);
   if (!words) throw Failure(options.file + ": no L-system");
   return std::move(*words);
@@ -120,7 +150,10 @@ std::string difference(const spawn::lsystem::Drawn& drawn, std::span<const GpgpI
 
 } // namespace
 
-bool isLsystem(const std::string& file) { return std::filesystem::path(file).extension() == ".lsys"; }
+bool isLsystem(const std::string& file) {
+  const auto ending = std::filesystem::path(file).extension();
+  return ending == ".lsys" || ending == ".l" || ending == ".ls";
+}
 
 Outcome spawnLsystem(const LsystemOptions& options, const CommonOptions& common) {
   const std::vector<uint32_t> words = compile(options);

@@ -3,7 +3,6 @@
 #include "cli/spawn/fit_scorer.h"
 #include "core/suggest.h"
 #include "spawn/evaluator/evaluator.h"
-#include "spawn/schedule/camera.h"
 #include "spawn/schedule/measuring.h"
 
 #include <algorithm>
@@ -58,13 +57,14 @@ GpgpMeasure measureNamed(const std::string& terminal, const std::string& factors
 }
 
 GpgpAxiomMeasures measureOnCpu(std::span<const uint32_t> grammar, const GpgpMeasureInfo& info, uint32_t terminals,
-                               const GpgpAxiom& axiom, uint32_t maxDepth, const shader::View* view,
+                               const GpgpAxiom& axiom, uint32_t maxDepth, const World& world,
                                std::vector<uint32_t>& cells) {
   const auto measuring = spawn::measuringOf(info, terminals);
   if (!measuring) throw Failure(measuring.error().text);
   spawn::DeriveOptions how;
   if (maxDepth) how.maxDepth = maxDepth;
-  how.view = view;
+  how.view = world.view;
+  how.fields = world.fields;
   const spawn::Derivation all = spawn::derive(grammar, std::span(&axiom, 1), how);
   std::array<uint32_t, shader::kMeasuredWords> words{};
   cells.assign(std::max<size_t>(spawn::gridWords(info), 1), 0);
@@ -74,7 +74,7 @@ GpgpAxiomMeasures measureOnCpu(std::span<const uint32_t> grammar, const GpgpMeas
 }
 
 Json measureAxioms(Session& session, const BakedGraph& grammar, const std::vector<std::string>& texts,
-                   const std::vector<GpgpAxiom>& axioms, uint32_t maxDepth, const GpgpSpawnCamera* camera) {
+                   const std::vector<GpgpAxiom>& axioms, const DeriverOptions& how, const World& world) {
   if (grammar.graph.phases)
     throw Usage("--measure is not for grammars with colliders, which know those of all axioms of a recording");
   if (texts.size() > GPGP_MAX_MEASURES)
@@ -86,15 +86,14 @@ Json measureAxioms(Session& session, const BakedGraph& grammar, const std::vecto
     measures.push_back(measureNamed(text.substr(0, colon), text.substr(colon + 1), grammar.graph, text));
   }
   const GpgpMeasureInfo info{measures.data(), static_cast<uint32_t>(measures.size()), nullptr};
-  FitScorer scorer(session, grammar, info, maxDepth, camera);
+  FitScorer scorer(session, grammar, info, how);
   const std::vector<GpgpAxiomMeasures> measured = scorer.measure(axioms);
-  const auto view = spawn::viewOf(camera);
   Json list = Json::array();
   std::vector<uint32_t> cells;
   for (size_t i = 0; i < axioms.size(); ++i) {
     const GpgpAxiomMeasures cpu =
-        measureOnCpu(grammar.words, info, static_cast<uint32_t>(grammar.graph.terminals.size()), axioms[i], maxDepth,
-                     view ? &*view : nullptr, cells);
+        measureOnCpu(grammar.words, info, static_cast<uint32_t>(grammar.graph.terminals.size()), axioms[i],
+                     how.maxDepth, world, cells);
     if (const std::string what = differenceOf(measured[i], cpu); !what.empty())
       throw Failure("axiom " + std::to_string(i) + ": the device measured something else than the CPU: " + what +
                     "; please report this");

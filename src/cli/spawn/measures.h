@@ -2,6 +2,7 @@
 #pragma once
 #include "cli/shared/session.h"
 #include "cli/spawn/axioms.h"
+#include "cli/spawn/reference.h"
 #include "cli/tune/deriver.h"
 #include "spawn/evaluator/evaluator.h"
 
@@ -15,12 +16,12 @@ GpgpMeasure measureNamed(const std::string& terminal, const std::string& factors
 
 /// What the CPU measures of an axiom, and the cells of the grid that it occupies.
 GpgpAxiomMeasures measureOnCpu(std::span<const uint32_t> grammar, const GpgpMeasureInfo& info, uint32_t terminals,
-                               const GpgpAxiom& axiom, uint32_t maxDepth, const shader::View* view,
+                               const GpgpAxiom& axiom, uint32_t maxDepth, const World& world,
                                std::vector<uint32_t>& cells);
 
-/// `gpgp spawn --measure`, of every axiom: by the device, and each checked against the CPU. Throws Usage for wrong
-/// texts, Failure where the two differ.
+/// `gpgp spawn --measure`, of every axiom: by the device, and each checked against the CPU. how: its depth, camera
+/// and fields, which world has for the CPU. Throws Usage for wrong texts, Failure where the two differ.
 Json measureAxioms(Session& session, const BakedGraph& grammar, const std::vector<std::string>& texts,
-                   const std::vector<GpgpAxiom>& axioms, uint32_t maxDepth, const GpgpSpawnCamera* camera);
+                   const std::vector<GpgpAxiom>& axioms, const DeriverOptions& how, const World& world);
 
 } // namespace gpgp::cli

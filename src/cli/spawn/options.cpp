@@ -1,10 +1,15 @@
 #include "cli/spawn/options.h"
 
 #include "cli/spawn/axioms.h"
+#include "cli/spawn/fields.h"
 #include "cli/spawn/grammar_source.h"
 #include "cli/tune/kernels.h"
 
 namespace gpgp::cli {
+
+GlbInstances glbInstances(const SpawnOptions& options) {
+  return options.instanced ? GlbInstances::instanced : options.nodes ? GlbInstances::nodes : GlbInstances::triangles;
+}
 
 void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
   addGrammars(command, options.grammars);
@@ -74,6 +79,9 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
   command.add_option("--attr", options.attributes, "Set an attr of a .cga file; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
+  command.add_flag(
+      "--attributes", options.listsAttributes,
+      "List the attributes of a .cga file with their values, ranges, choices and groups, and derive nothing");
   command.add_option("--style", options.style, "A style of the .cga file")->type_name("NAME");
   command.add_flag("--geographic", options.geographic, "Coordinates of a GeoJSON --axiom-file are longitude, latitude");
   command
@@ -82,6 +90,7 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
                   "FACTORS, letters of x y z (the sizes) and a (the attribute), or count; up to four")
       ->type_name("TERMINAL:FACTORS")
       ->allow_extra_args(false);
+  addFields(command, options.fields);
   command.add_option("--repeat", options.repeat, "Derive N times, after 0.1 s to warm up, and report the median time")
       ->check(CLI::Range(1u, 100000u))
       ->capture_default_str();
@@ -115,18 +124,19 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
   CLI::Option* image = command.add_option("--image", options.image, "Write a picture of the result")
                            ->check(pngFile())
                            ->type_name("FILE.png");
-  command.add_option("--yaw", options.yaw, "Camera of that picture: degrees around the scene")
-      ->needs(image)
-      ->check(within(-36000.0, 36000.0))
-      ->capture_default_str();
-  command.add_option("--pitch", options.pitch, "Degrees above the horizon")
-      ->needs(image)
-      ->check(within(-89.0, 89.0))
-      ->capture_default_str();
-  command.add_option("--zoom", options.zoom, "How many times closer than a view of the whole scene")
-      ->needs(image)
-      ->check(within(0.01, 1000.0))
-      ->capture_default_str();
+  CLI::Option* yaw = command.add_option("--yaw", options.yaw, "Camera of that picture: degrees around the scene")
+                         ->needs(image)
+                         ->check(within(-36000.0, 36000.0))
+                         ->capture_default_str();
+  CLI::Option* pitch = command.add_option("--pitch", options.pitch, "Degrees above the horizon")
+                           ->needs(image)
+                           ->check(within(-89.0, 89.0))
+                           ->capture_default_str();
+  CLI::Option* zoom =
+      command.add_option("--zoom", options.zoom, "How many times closer than a view of the whole scene")
+          ->needs(image)
+          ->check(within(0.01, 1000.0))
+          ->capture_default_str();
   CLI::Option* camera =
       command
           .add_option("--camera", options.camera,
@@ -134,11 +144,27 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
                       "OutOfView(); --image shows its view, which has the size of --image-size")
           ->delimiter(',')
           ->type_name("X,Y,Z,X,Y,Z")
+          ->excludes(yaw)
+          ->excludes(pitch)
+          ->excludes(zoom)
           ->each([o = &options](const std::string&) { o->hasCamera = true; });
   command.add_option("--fov", options.fov, "The camera's vertical field of view, degrees")
       ->needs(camera)
       ->check(within(1, 170))
       ->capture_default_str();
+  CLI::Option* detail = command
+                            .add_option("--detail", options.detail,
+                                        "Times ScreenSize() of that camera: less than 1 is coarser, more is finer")
+                            ->needs(camera)
+                            ->check(within(1e-6, 1e6))
+                            ->capture_default_str();
+  command
+      .add_option("--budget", options.budget,
+                  "Terminals at most: finds the --detail, at most 1, with which what the camera sees stays within them")
+      ->needs(camera)
+      ->excludes(detail)
+      ->type_name("TERMINALS")
+      ->check(CLI::Range(1u, 1u << 30));
   command
       .add_option("--changed", options.changed,
                   "Also derive PERCENT of the axioms again with other seeds, in place; reports the time, and checks "
@@ -163,7 +189,10 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
       ->excludes("--out-nodes");
   CLI::Option* imageSize =
       addSize(command, "--image-size", options.imageSize, "Size of that picture (default 1280x720)");
-  command.parse_complete_callback([image, camera, imageSize] {
+  command.parse_complete_callback([image, camera, imageSize, &command, &options] {
+    options.given.clear();
+    for (const CLI::Option* option : command.get_options())
+      if (*option) options.given.push_back(option->get_name());
     if (*imageSize && !*image && !*camera) throw CLI::RequiresError("--image-size", "--image or --camera");
   });
   command
@@ -201,6 +230,8 @@ Examples:
   gpgp spawn town.pga --axiom-file lots.csv             x,z,rotation,size_x,size_y,size_z,seed,rule on the first line;
                                                         also y, qx to qw, m00 to m23, shape, attribute
   gpgp spawn wood.pga --scatter 6 --area 400,400 --axiom-size 7,10,7 --density wood.png --terrain hills.png
+  gpgp spawn wood.pga --axioms 4096 --axiom-size 7,10,7 --camera 0,4,300,0,3,0 --budget 50000 --image wood.png
+  gpgp spawn hills.pga --axioms 400 --field terrain=hills.png,-256,-256,256,256,60
   gpgp spawn house.pga tree.pga --axiom-file lots.csv   as one grammar; in the rule column: house, tree, house.Wall
   gpgp spawn old=a/house.pga new=b/house.pga            two files of one name; in the rule column: old, new
   gpgp spawn castle.gml --axiom-size 40,12,40 --start roundTower    a program; it starts at its axiom, or at a rule
@@ -209,6 +240,7 @@ Examples:
   gpgp spawn tower.pga --axioms 1024 --schedule tuned --output vertices --repeat 50
   gpgp spawn house.cga --axiom-size 12,1,18 --attr floors=3 --image house.png --out house.glb
   gpgp spawn house.cga --axiom-file lots.geojson        polygons, with holes; their properties set attributes
+  gpgp spawn house.cga --attributes                     its attributes, with ranges, choices and groups
 
 An axiom stands on its position. The CPU evaluator derives the same on one thread, to check the device's result;
 cpu_reference_ms is its time. Errors in the grammar and in axiom files are printed with their place. What exceeds a

@@ -29,9 +29,10 @@ uint64_t hashOf(std::span<const GpgpInstance> instances) {
 } // namespace
 
 spawn::Derivation checkThatItEnds(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms, uint32_t maxDepth,
-                                  const std::string& grammar, const shader::View* view) {
+                                  const std::string& grammar, const World& world) {
   spawn::DeriveOptions options;
-  options.view = view;
+  options.view = world.view;
+  options.fields = world.fields;
   if (maxDepth) options.maxDepth = maxDepth;
   options.keepInstances = false;
   spawn::Derivation all = spawn::derive(words, axioms, options);
@@ -47,9 +48,10 @@ spawn::Derivation checkThatItEnds(std::span<const uint32_t> words, std::span<con
 }
 
 std::optional<uint32_t> depthOf(std::span<const uint32_t> words, std::span<const GpgpAxiom> axioms,
-                                const shader::View* view) {
+                                const World& world) {
   spawn::DeriveOptions options;
-  options.view = view;
+  options.view = world.view;
+  options.fields = world.fields;
   options.maxDepth = 1u << 16; // each level is a place on the evaluator's stack
   options.keepInstances = false;
   const spawn::Derivation all = spawn::derive(words, axioms, options);
@@ -57,13 +59,14 @@ std::optional<uint32_t> depthOf(std::span<const uint32_t> words, std::span<const
 }
 
 Reference evaluate(std::span<const uint32_t> words, const std::vector<GpgpAxiom>& axioms, uint32_t maxDepth,
-                   const spawn::VertexLayout* layout, const std::string& grammar, const shader::View* view) {
-  spawn::Derivation memory = checkThatItEnds(words, axioms, maxDepth, grammar, view);
+                   const spawn::VertexLayout* layout, const std::string& grammar, const World& world) {
+  spawn::Derivation memory = checkThatItEnds(words, axioms, maxDepth, grammar, world);
   if (!memory.complete) return {std::move(memory), 0};
   memory.instances.resize(memory.terminals);
   spawn::DeriveOptions options;
   if (maxDepth) options.maxDepth = maxDepth;
-  options.view = view;
+  options.view = world.view;
+  options.fields = world.fields;
   options.vertices = layout;
   Reference reference;
   const auto begin = std::chrono::steady_clock::now();

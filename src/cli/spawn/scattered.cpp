@@ -33,7 +33,7 @@ struct Field {
 
 std::vector<GpgpAxiom> scatterAxioms(const ScatterOptions& options, const AxiomDefaults& defaults) {
   const Field density(options.density, options.area, 1), terrain(options.terrain, options.area, options.terrainHeight);
-  GpgpScatterInfo info{};
+  GpgpScatterInfo info = GPGP_SCATTER_INFO_INIT;
   info.base = axiomAt({0, 0, 0}, 0, defaults.size, defaults.seed, 0);
   info.base.transform[7] = 0; // it stands on its place, which the library sees to
   info.distance = options.distance;

@@ -2,9 +2,11 @@
 #include "cli/shared/command.h"
 #include "cli/shared/painter.h"
 #include "cli/spawn/axioms.h"
-#include "cli/spawn/cga.h"
+#include "cli/spawn/camera.h"
 #include "cli/spawn/cga_source.h"
+#include "cli/spawn/fields.h"
 #include "cli/spawn/grammar_source.h"
+#include "cli/spawn/languages.h"
 #include "cli/spawn/lsystem.h"
 #include "cli/spawn/measures.h"
 #include "cli/spawn/options.h"
@@ -15,7 +17,6 @@
 #include "cli/tune/tuner.h"
 #include "core/suggest.h"
 #include "host/files.h"
-#include "spawn/schedule/camera.h"
 
 #include <gpgp/spawn.h>
 
@@ -26,10 +27,6 @@
 
 namespace gpgp::cli {
 namespace {
-
-GlbInstances glbInstances(const SpawnOptions& options) {
-  return options.instanced ? GlbInstances::instanced : options.nodes ? GlbInstances::nodes : GlbInstances::triangles;
-}
 
 /// The kernel that --schedule names: none for the interpreter.
 struct Chosen {
@@ -49,7 +46,7 @@ void queuesNothing(const SpawnOptions& options, const char* what) {
 }
 
 Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, const std::vector<GpgpAxiom>& axioms,
-                    Session& session) {
+                    const DeriverOptions& how, Session& session) {
   const std::string& name = options.schedule;
   const uint32_t count = static_cast<uint32_t>(axioms.size());
   const auto taken = [&](const spawn::Kernel& kernel, const std::filesystem::path& file) {
@@ -74,7 +71,7 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
     TuneSettings settings;
     settings.matching = options.matching == "on";
     settings.heuristics = options.heuristics;
-    settings.maxDepth = options.maxDepth;
+    settings.derive = how;
     const Tuned tuned = tuneGrammar(session, grammar, axioms, settings);
     keepKernel(file, grammar, tuned.info, tuned.code, stored);
     std::fprintf(stderr, "gpgp spawn: kept in %s\n", file.string().c_str());
@@ -101,25 +98,10 @@ Chosen chooseKernel(const SpawnOptions& options, const BakedGraph& grammar, cons
   return taken(*kernel, name);
 }
 
-/// World to clip, of --camera.
-glm::mat4 matrixOf(const SpawnOptions& options) {
-  const std::array<float, 6>& c = options.camera;
-  return viewFrom({c[0], c[1], c[2]}, {c[3], c[4], c[5]}, options.fov, options.imageSize.width,
-                  options.imageSize.height);
-}
-GpgpSpawnCamera cameraOf(const SpawnOptions& options) {
-  GpgpSpawnCamera camera{};
-  const glm::mat4 matrix = matrixOf(options);
-  for (int i = 0; i < 16; ++i) camera.viewProjection[i] = matrix[i / 4][i % 4];
-  std::copy_n(options.camera.begin(), 3, camera.position);
-  camera.height = options.imageSize.height;
-  return camera;
-}
-
 /// Terminals are coloured by the index that the grammar gives them, on a square of ground.
 void paint(const SpawnOptions& options, const Triangles& all, const spawn::Graph& graph) {
   SceneView view{options.imageSize, options.yaw, options.pitch, options.zoom, 0};
-  if (options.hasCamera) view.camera = matrixOf(options);
+  if (options.hasCamera) view.camera = cameraMatrix(options);
   paintScene(options.image, view, all.corners,
              [&](size_t i) { return paletteColour(graph.terminals[all.terminals[i]].index); });
 }
@@ -227,75 +209,6 @@ bool hasDynamicTerminals(const spawn::Graph& graph) {
   });
 }
 
-/// A .cga file alone; what is for other grammars is refused.
-Outcome spawnFile(const SpawnOptions& options, const CommonOptions& common) {
-  if (options.grammars.size() > 1) throw Usage("a .cga file is derived alone; it imports others itself");
-  if (!options.set.empty()) throw Usage("attributes of .cga files are set by --attr NAME=VALUE, not by --set");
-  if (options.output != "instances" || options.sorted || options.nodes || options.instanced || options.maxInstances ||
-      options.maxColliders || options.slice || (options.schedule != "default" && options.schedule != "interpreter"))
-    throw Usage(
-        "--output, --sorted, --out-nodes, --instanced, --slice, --max-instances, --max-colliders and schedules "
-        "other than default and interpreter are not for .cga files; `gpgp bake` makes grammars of them that take "
-        "these");
-  CgaOptions cga;
-  cga.file = options.grammars[0];
-  cga.start = options.start;
-  cga.style = options.style;
-  cga.attributes = options.attributes;
-  cga.axioms = options.axioms;
-  cga.seed = options.seed;
-  if (options.hasSize) cga.size = options.size;
-  cga.spacing = options.spacing;
-  cga.axiomFile = options.axiomFile;
-  cga.geographic = options.geographic;
-  cga.image = options.image;
-  cga.out = options.out;
-  cga.view = {options.imageSize, options.yaw, options.pitch, options.zoom, 0.003f};
-  cga.maxDepth = options.maxDepth;
-  cga.maxShapes = options.maxShapes;
-  cga.maxFaces = options.maxFaces;
-  cga.maxVertices = options.maxVertices;
-  cga.maxGeometry = options.maxGeometry;
-  cga.maxWork = options.maxWork;
-  cga.repeat = options.repeat;
-  cga.schedule = options.schedule;
-  return spawnCga(cga, common);
-}
-
-/// An L-system, of the options that mean something to one.
-Outcome spawnLsystem(const SpawnOptions& options, const CommonOptions& common) {
-  if (options.grammars.size() > 1) throw Usage("an L-system (.lsys) is derived alone; it cannot be linked");
-  for (const auto& [option, given] : {std::pair{"--schedule", options.schedule != "default"},
-                                      {"--matching", options.matching != "off"},
-                                      {"--queues", options.queues != "mixed"},
-                                      {"--output vertices", options.output != "instances"},
-                                      {"--sorted", options.sorted},
-                                      {"--max-shapes", options.maxShapes != 0},
-                                      {"--max-depth", options.maxDepth != 0},
-                                      {"--max-colliders", options.maxColliders != 0},
-                                      {"--slice", options.slice != 0},
-                                      {"--start", !options.start.empty()}})
-    if (given) throw Usage(std::string(option) + " means nothing to an L-system (.lsys)");
-  const AxiomDefaults defaults{{options.size[0], 0, options.size[2]}, options.seed, {GPGP_AXIOM_DEFAULT_START}};
-  LsystemOptions own;
-  own.file = options.grammars[0];
-  own.set = options.set;
-  own.axioms = options.axiomFile.empty() ? axiomGrid(std::max(options.axioms, 1u), options.spacing, defaults)
-                                         : readAxioms(options.axiomFile, {}, defaults);
-  own.repeat = options.repeat;
-  own.maxInstances = options.maxInstances;
-  own.maxModules = options.maxModules;
-  own.string = options.string;
-  own.image = options.image;
-  own.out = options.out;
-  own.imageSize = options.imageSize;
-  own.yaw = options.yaw;
-  own.pitch = options.pitch;
-  own.zoom = options.zoom;
-  own.instances = glbInstances(options);
-  return spawnLsystem(own, common);
-}
-
 /// The rule or axiom that --start names.
 uint32_t startNamed(const BakedGraph& grammar, const std::string& name) {
   const std::vector<NamedStart> starts = grammar.namedStarts();
@@ -327,17 +240,10 @@ Changes change(const SpawnOptions& options, const std::vector<GpgpAxiom>& axioms
 }
 
 Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
-  if ((options.scatter.distance > 0 || !options.measures.empty()) &&
-      std::any_of(options.grammars.begin(), options.grammars.end(),
-                  [](const auto& file) { return isCga(file) || isLsystem(file); }))
-    throw Usage("--scatter and --measure are for .pga and .gml files, and for baked grammars");
-  if (std::any_of(options.grammars.begin(), options.grammars.end(), isCga)) return spawnFile(options, common);
-  if (!options.style.empty() || !options.attributes.empty() || options.geographic || options.maxFaces ||
-      options.maxVertices || options.maxGeometry || options.maxWork)
-    throw Usage("--style, --attr, --geographic, --max-faces, --max-vertices, --max-geometry and --max-work are for "
-                ".cga files");
-  if (std::any_of(options.grammars.begin(), options.grammars.end(), isLsystem)) return spawnLsystem(options, common);
-  if (options.string || options.maxModules) throw Usage("--string and --max-modules are for L-systems (.lsys)");
+  if (std::any_of(options.grammars.begin(), options.grammars.end(), isCga)) return spawnCgaFile(options, common);
+  if (std::any_of(options.grammars.begin(), options.grammars.end(), isLsystem))
+    return spawnLsystemFile(options, common);
+  expectOfGrammars(options);
   const bool vertices = options.output == "vertices";
   if (vertices && options.sorted) throw Usage("--sorted is for --output instances");
   if (options.changed > 0 && (vertices || options.sorted || options.slice || options.maxInstances))
@@ -355,23 +261,30 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
           : axiomGrid(options.axioms ? options.axioms : grammarCount, options.spacing, defaults);
   Session session(common);
   const Slices slices = slicesFor(options, start, graph, session);
+  const WorldFields fields(options.fields, graph);
   std::optional<GpgpSpawnCamera> camera;
   if (options.hasCamera) camera = cameraOf(options);
-  const auto view = spawn::viewOf(camera ? &*camera : nullptr);
-  if (!view) throw Usage(std::string("--camera: ") + view.error().text);
+  if (options.budget)
+    camera->detail = detailWithin(options.budget, *camera, grammar.words, start, options.maxDepth,
+                                  joined(options.grammars), fields.bound());
+  const shader::View view = viewOf(camera);
+  const World world{&view, &fields.bound()};
   const auto layout = spawn::layoutOf(Deriver::layout());
   const Reference reference =
-      evaluate(grammar.words, start, options.maxDepth, vertices ? &*layout : nullptr, joined(options.grammars), &*view);
-  const Chosen chosen = chooseKernel(options, grammar, slices.of(0), session);
+      evaluate(grammar.words, start, options.maxDepth, vertices ? &*layout : nullptr, joined(options.grammars), world);
+  DeriverOptions how; // whatever is written
+  how.maxDepth = options.maxDepth;
+  how.camera = camera;
+  fields.give(how);
+  const Chosen chosen = chooseKernel(options, grammar, slices.of(0), how, session);
 
-  DeriverOptions deriverOptions;
+  DeriverOptions deriverOptions = how;
+  deriverOptions.kernelsOnly = !chosen.words.empty();
   deriverOptions.vertices = vertices;
   deriverOptions.sorted = options.sorted;
   deriverOptions.maxShapes = options.maxShapes;
-  deriverOptions.maxDepth = options.maxDepth;
   deriverOptions.maxColliders = options.maxColliders;
   deriverOptions.maxInstances = options.maxInstances;
-  deriverOptions.camera = camera;
   deriverOptions.expected =
       (vertices ? reference.result.vertexWords.size() * 4 / sizeof(SpawnedVertex) : reference.result.terminals) /
       slices.recordings;
@@ -390,6 +303,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     deriverOptions.sorted = false;
     deriverOptions.maxInstances = 0;
     deriverOptions.expected = 0;
+    deriverOptions.kernelsOnly = !deriver.interprets();
     asVertices.emplace(session, grammar, slices.of(0), deriverOptions);
   }
   Triangles triangles{!options.image.empty(), std::vector<uint64_t>(graph.terminals.size())};
@@ -417,10 +331,10 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
       Hopeless hopeless; // which the report does not tell from those that still waited
       if (measured.report.droppedShapes && reference.result.droppedShapes) {
         const spawn::Derivation own =
-            checkThatItEnds(grammar.words, slices.of(record), options.maxDepth, joined(options.grammars), &*view);
+            checkThatItEnds(grammar.words, slices.of(record), options.maxDepth, joined(options.grammars), world);
         hopeless = {own.droppedShapes - own.uncutShapes, own.uncutShapes};
       }
-      const auto depth = [&] { return depthOf(grammar.words, slices.of(record), &*view); };
+      const auto depth = [&] { return depthOf(grammar.words, slices.of(record), world); };
       budgets = exceededBudgets(measured.report, hopeless, depth, deriver, vertices);
       if (!budgets.empty() && slices.recordings > 1)
         budgets.insert(0,
@@ -448,8 +362,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
   std::optional<Changes> changes;
   if (options.changed > 0) changes = change(options, start, deriver, prepared);
   Json measures;
-  if (!options.measures.empty())
-    measures = measureAxioms(session, grammar, options.measures, start, options.maxDepth, camera ? &*camera : nullptr);
+  if (!options.measures.empty()) measures = measureAxioms(session, grammar, options.measures, start, how, world);
   session.checkValidation();
 
   std::vector<std::string> bucketNames(std::max(graph.buckets, 1u));
@@ -517,6 +430,9 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
     text << "derived anew: " << changes->changed << " of " << changes->instances << " instances in "
          << milliseconds(changes->part.median()) << " instead of " << milliseconds(changes->whole.median())
          << " for all; all others are unchanged\n";
+  if (options.budget)
+    text << "detail " << camera->detail << ": " << reference.result.terminals << " of the " << options.budget
+         << " terminals that --budget allows\n";
   for (const std::string& name : options.measures) {
     double sum = 0;
     for (const Json& axiom : measures) sum += axiom["sums"][name].get<double>();
@@ -564,6 +480,7 @@ Outcome spawn(const SpawnOptions& options, const CommonOptions& common) {
                                              {"gpu_ms_median_of_all", changes->whole.median()}}
                                       : Json()},
                   {"measures", measures},
+                  {"detail", camera ? Json(camera->detail > 0 ? camera->detail : 1) : Json()},
                   {"image", options.image.empty() ? Json() : Json(options.image)},
                   {"out", options.out.empty() ? Json() : Json(options.out)}};
   return outcome;

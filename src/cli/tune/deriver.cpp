@@ -2,6 +2,7 @@
 
 #include "cli/shared/processors.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstring>
@@ -44,12 +45,14 @@ Deriver::Deriver(Session& session, const BakedGraph& grammar, const std::vector<
       maxColliders_(options.maxColliders   ? options.maxColliders
                     : grammar.graph.phases ? kMostSoftwareColliders
                                            : 0),
-      firstShapes_(maxShapes_), firstRounds_(maxRounds_) {
+      firstShapes_(maxShapes_), firstRounds_(maxRounds_), interprets_(!options.kernelsOnly) {
   const size_t buckets = std::max(grammar.graph.buckets, 1u);
   draws_ = host::makeBuffer(session.device(), std::vector<VkDrawIndexedIndirectCommand>(buckets),
                             kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, "draws");
   count_ = host::Buffer(session.device(), 4, kStorage);
   if (options.bounds) bounds_ = host::Buffer(session.device(), buckets * sizeof(GpgpSpawnBounds), kStorage);
+  if (!options.fieldValues.empty())
+    fieldValues_ = host::makeBuffer(session.device(), options.fieldValues, kStorage, "fields");
   setAxioms(axioms);
   makeOutput(options.maxInstances ? options.maxInstances : std::max<uint64_t>(options.expected, 1));
   makeSpawner();
@@ -78,6 +81,7 @@ Spawner Deriver::newSpawner(uint32_t rounds) {
   info.maxDepth = options_.maxDepth;
   info.maxRounds = rounds == maxRounds_ && rounds == firstRounds_ ? 0 : rounds; // 0: fewer where fewer are enough
   info.maxColliders = maxColliders_;
+  if (!interprets_) info.flags = GPGP_SPAWNER_KERNELS_ONLY;
   Spawner spawner = session_.take(Spawner::create(session_.context(), info), "gpgpCreateSpawner");
   session_.check(spawner.prewarm(), "gpgpPrewarm");
   return spawner;
@@ -142,6 +146,13 @@ std::vector<Grammar> Deriver::prepare(std::span<const std::pmr::vector<uint32_t>
   for (const auto& kernel : kernels) grammars.push_back(load(kernel));
   std::vector<GpgpResult> results(grammars.size());
   onAllProcessors(grammars.size(), [&](size_t i) { results[i] = prewarm(grammars[i]); });
+  if (!interprets_ && std::ranges::count(results, GPGP_ERROR_UNSUPPORTED) > 0) { // no kernel fits this device
+    session_.dropError();
+    interprets_ = true;
+    makeSpawner();
+    for (size_t i = 0; i < grammars.size(); ++i)
+      if (results[i] == GPGP_ERROR_UNSUPPORTED) results[i] = prewarm(grammars[i]);
+  }
   for (const GpgpResult result : results) session_.check(result, "gpgpPrewarmGrammar");
   session_.upload();
   return grammars;
@@ -149,6 +160,14 @@ std::vector<Grammar> Deriver::prepare(std::span<const std::pmr::vector<uint32_t>
 
 Grammar Deriver::prepare(const std::pmr::vector<uint32_t>& kernel) {
   return std::move(prepare(std::span(&kernel, 1)).front());
+}
+
+void Deriver::setWorld(GpgpSpawnInfo& info) const {
+  if (options_.camera) info.camera = &*options_.camera;
+  if (options_.fields.empty()) return;
+  info.fields = options_.fields.data();
+  info.fieldCount = static_cast<uint32_t>(options_.fields.size());
+  info.fieldValues = fieldValues_.range();
 }
 
 Measured<GpgpSpawnReport> Deriver::measure(const Grammar& grammar, uint32_t repeat, uint32_t rounds) {
@@ -175,7 +194,7 @@ Measured<GpgpSpawnReport> Deriver::measure(const Grammar& grammar, uint32_t repe
                               info.instances = instances_.range({}, kRead);
                             if (options_.sorted) info.draws = draws_.range({}, kRead);
                             if (options_.bounds) info.bounds = bounds_.range({}, kRead);
-                            if (options_.camera) info.camera = &*options_.camera;
+                            setWorld(info);
                             return spawner.recordPrepare(commands, frame, info);
                           });
 }
@@ -200,7 +219,7 @@ Measured<GpgpSpawnReport> Deriver::measureRanges(const Grammar& grammar, const s
                          info.axiomCount = static_cast<uint32_t>(axioms.size());
                          info.instances = instances_.range({}, kRead);
                          info.ranges = own.range(copied, kRead);
-                         if (options_.camera) info.camera = &*options_.camera;
+                         setWorld(info);
                          return spawner_->recordPrepare(commands, frame, info);
                        });
   ranges = host::download<GpgpAxiomRange>(session_.device(), own, ranges.size());

@@ -17,7 +17,10 @@ struct DeriverOptions {
   uint32_t maxColliders = 0;             ///< 0: as many as there are
   uint64_t expected = 0;                 ///< instances or vertices, where that is known: spares a second try
   std::optional<GpgpSpawnCamera> camera; ///< of all recordings
-  uint32_t maxInstances = 0;             ///< 0: as many as there are, as far as the device binds them
+  std::vector<GpgpSpawnField> fields;    ///< as well; their names must outlive the deriver
+  std::vector<float> fieldValues;
+  uint32_t maxInstances = 0; ///< 0: as many as there are, as far as the device binds them
+  bool kernelsOnly = false;  ///< grammars have kernels; the interpreter is made only where none of them fits the device
 };
 
 /// A vertex of `--output vertices`: position R32G32B32_SFLOAT, normal R8G8B8A8_SNORM, uv R32G32_SFLOAT, terminal and
@@ -74,6 +77,7 @@ public:
   uint32_t mostShapes() const;
   uint32_t maxShapes() const { return maxShapes_; }
   uint32_t maxRounds() const { return maxRounds_; }
+  bool interprets() const { return interprets_; }
   /// What the last derivation took and wrote, read back.
   std::vector<GpgpInstance> instances();
   std::vector<SpawnedVertex> vertices();
@@ -83,6 +87,8 @@ public:
   uint64_t bytesWritten();
 
 private:
+  /// Camera and fields.
+  void setWorld(GpgpSpawnInfo& info) const;
   Measured<GpgpSpawnReport> measureRanges(const Grammar& grammar, const std::vector<GpgpAxiom>& axioms,
                                           std::vector<GpgpAxiomRange>& ranges, uint32_t repeat);
   Spawner newSpawner(uint32_t rounds);
@@ -95,8 +101,9 @@ private:
   uint32_t axiomCount_ = 0, maxShapes_ = 0, maxRounds_ = 0, maxTerminals_ = 0, maxColliders_ = 0;
   uint32_t firstShapes_ = 0, firstRounds_ = 0; // budgets of the start
   std::optional<Spawner> spawner_;
+  bool interprets_ = true;
   std::map<uint32_t, Spawner> limited_; // with fewer rounds
-  host::Buffer axioms_, instances_, vertices_, indices_, draws_, count_, bounds_;
+  host::Buffer axioms_, instances_, vertices_, indices_, draws_, count_, bounds_, fieldValues_;
   uint64_t elements_ = 0; // instances or vertices that the buffers hold
 };
 

@@ -1,6 +1,7 @@
 // `gpgp tune`: finds the fastest schedule of a grammar on a device and keeps its kernel, baked behind the graph.
 #include "cli/shared/command.h"
 #include "cli/spawn/axioms.h"
+#include "cli/spawn/fields.h"
 #include "cli/spawn/grammar_source.h"
 #include "cli/spawn/reference.h"
 #include "cli/tune/tuner.h"
@@ -13,7 +14,7 @@ namespace {
 
 struct TuneOptions {
   std::string axiomFile, out, search = "auto", matching = "off", queues = "both";
-  std::vector<std::string> grammars, set;
+  std::vector<std::string> grammars, set, fields;
   uint32_t axioms = 256;
   std::array<float, 3> size{1, 1, 1};
   TuneSettings settings;
@@ -37,7 +38,10 @@ Outcome tune(const TuneOptions& options, const CommonOptions& common) {
   const std::vector<GpgpAxiom> axioms = options.axiomFile.empty()
                                             ? axiomGrid(options.axioms, 0, defaults)
                                             : readAxioms(options.axiomFile, grammar.namedStarts(), defaults);
-  checkThatItEnds(grammar.words, axioms, settings.maxDepth, joined(options.grammars));
+  const WorldFields fields(options.fields, grammar.graph);
+  fields.give(settings.derive);
+  checkThatItEnds(grammar.words, axioms, settings.derive.maxDepth, joined(options.grammars),
+                  {nullptr, &fields.bound()});
   Session session(common);
   const Tuned tuned = tuneGrammar(session, grammar, axioms, settings);
   keepKernel(out, grammar, tuned.info, tuned.code, others);
@@ -118,6 +122,7 @@ Work addTune(CLI::App& app) {
           "Extents of each start shape in metres (default 1,1,1)")
       ->type_name("X,Y,Z");
   addVariables(*command, options->set);
+  addFields(*command, options->fields);
   command->add_option("--seed", settings.seed, "Random seed, of the search too; axiom i has seed S + i")
       ->capture_default_str();
   command
@@ -147,7 +152,8 @@ Work addTune(CLI::App& app) {
                    "software device some seconds; 0: no limit")
       ->check(within(0.0, 86400.0))
       ->capture_default_str();
-  command->add_option("--max-depth", settings.maxDepth, "Budget: recursion depth of rules (0: the library's default)");
+  command->add_option("--max-depth", settings.derive.maxDepth,
+                      "Budget: recursion depth of rules (0: the library's default)");
   command->add_flag("--schedules-only", settings.schedulesOnly, "Leave sizes and counts as the device suggests");
   command
       ->add_option("-o,--out", options->out,

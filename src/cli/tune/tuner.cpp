@@ -68,9 +68,7 @@ public:
       : session_(session), grammar_(grammar), settings_(settings), axioms_(static_cast<uint32_t>(axioms.size())),
         software_(session.device().isSoftware()) {
     findSchedules();
-    DeriverOptions options;
-    options.maxDepth = settings.maxDepth;
-    deriver_.emplace(session, grammar, axioms, options);
+    deriver_.emplace(session, grammar, axioms, settings.derive);
   }
 
   Tuned run() {

@@ -25,7 +25,7 @@ struct TuneSettings {
   bool schedulesOnly = false; ///< leave the numbers as the device suggests
   uint32_t samples = 32;      ///< schedules at most, the named ones included; the best few once more with queues
   uint32_t repeat = 15, seed = 1;
-  uint32_t maxDepth = 0; ///< as DeriverOptions
+  DeriverOptions derive; ///< its depth, camera and fields
   double seconds = 50;   ///< nothing is begun that would probably take longer; 0: no limit. The interpreter and one
                          ///< schedule are always measured
 };

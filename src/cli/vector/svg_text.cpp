@@ -1,6 +1,7 @@
 #include "cli/vector/svg_text.h"
 
 #include "cli/shared/command.h"
+#include "vector/import/svg/text_characters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,6 +44,28 @@ float weightOf(const std::string& style) {
   return 400;
 }
 
+/// Likewise, in percent.
+float stretchOf(const std::string& style) {
+  static constexpr struct {
+    const char* word;
+    float stretch;
+  } kStretches[] = {{"ultracondensed", 50},     {"ultra condensed", 50},  {"extracondensed", 62.5f},
+                    {"extra condensed", 62.5f}, {"semicondensed", 87.5f}, {"semi condensed", 87.5f},
+                    {"condensed", 75},          {"narrow", 75},           {"semiexpanded", 112.5f},
+                    {"semi expanded", 112.5f},  {"extraexpanded", 150},   {"extra expanded", 150},
+                    {"ultraexpanded", 200},     {"ultra expanded", 200},  {"expanded", 125}};
+  for (const auto& s : kStretches)
+    if (style.find(s.word) != std::string::npos) return s.stretch;
+  return 100;
+}
+
+/// How far a stretch is from the one that is wanted (CSS Fonts 4, 5.2): first those on its own side.
+float stretchDistance(float wanted, float stretch) {
+  constexpr float otherSide = 1000;
+  const bool isOwnSide = wanted <= 100 ? stretch <= wanted : stretch >= wanted;
+  return std::fabs(stretch - wanted) + (isOwnSide ? 0 : otherSide);
+}
+
 /// How far a weight is from the one that is wanted (CSS Fonts 4, 5.2): first those on its own side.
 float weightDistance(float wanted, float weight) {
   constexpr float otherSide = 1000;
@@ -81,8 +104,13 @@ SvgText::SvgText(const std::vector<std::string>& files, bool fromSystem) {
     if (!about) throw Failure(file + ": " + about.name());
     const std::string style = lowered(about->style ? about->style : "");
     const auto has = [&style](const char* word) { return style.find(word) != std::string::npos; };
-    faces_.push_back({std::move(*font), *about, lowered(about->family ? about->family : ""), weightOf(style),
-                      has("italic") || has("oblique")});
+    faces_.push_back({std::move(*font),
+                      *about,
+                      lowered(about->family ? about->family : ""),
+                      weightOf(style),
+                      stretchOf(style),
+                      has("italic") || has("oblique"),
+                      {file, 0, {}}});
   }
   fromSystem_ = files.empty() && fromSystem && SystemFonts::areThere();
   if (faces_.empty() && !fromSystem_) return;
@@ -98,8 +126,10 @@ std::vector<GpgpFont> SvgText::chosenOfSystem(const GpgpSvgTextSpan& span, std::
   if (!system_) system_.emplace();
   std::vector<GpgpFont> fonts;
   for (SystemFont& wanted :
-       system_->find(familiesOf(span.families), span.weight, span.italic != 0, span.language, text)) {
-    auto face = std::find_if(faces_.begin(), faces_.end(), [&](const Face& f) { return f.source == wanted; });
+       system_->find(familiesOf(span.families), {span.weight, span.stretch > 0 ? span.stretch : 100, span.italic != 0},
+                     span.language, text)) {
+    auto face =
+        std::find_if(faces_.begin(), faces_.end(), [&](const Face& f) { return !f.isInstance && f.source == wanted; });
     if (face == faces_.end()) {
       GpgpFontCreateInfo info = init<GpgpFontCreateInfo>();
       std::vector<GpgpFontAxisValue> axes;
@@ -112,12 +142,47 @@ std::vector<GpgpFont> SvgText::chosenOfSystem(const GpgpSvgTextSpan& span, std::
       if (!font) continue;
       const Result<GpgpFontInfo> about = font->info();
       if (!about) continue;
-      faces_.push_back({std::move(*font), *about, {}, span.weight, span.italic != 0, std::move(wanted)});
+      faces_.push_back({std::move(*font), *about, {}, span.weight, 100, span.italic != 0, std::move(wanted)});
       face = faces_.end() - 1;
     }
-    fonts.push_back(face->font.get());
+    fonts.push_back(
+        instance(static_cast<size_t>(face - faces_.begin()), span)); // fontconfig may name one by its number
   }
   return fonts;
+}
+
+GpgpFont SvgText::instance(size_t index, const GpgpSvgTextSpan& span) {
+  const struct {
+    GpgpTag tag;
+    float value;
+  } asked[] = {{GPGP_TAG('w', 'g', 'h', 't'), span.weight},
+               {GPGP_TAG('w', 'd', 't', 'h'), span.stretch > 0 ? span.stretch : 100},
+               {GPGP_TAG('i', 't', 'a', 'l'), span.italic ? 1.0f : 0.0f}};
+  SystemFont at = faces_[index].source;
+  at.axes.clear();
+  std::vector<GpgpFontAxisValue> axes;
+  for (const GpgpFontAxis& axis : std::span(faces_[index].info.axes, faces_[index].info.axisCount))
+    for (const auto& a : asked)
+      if (a.tag == axis.tag) axes.push_back({axis.tag, std::clamp(a.value, axis.minimum, axis.maximum)});
+  if (axes.empty()) return faces_[index].font.get();
+  for (const GpgpFontAxisValue& axis : axes) {
+    const char tag[4] = {static_cast<char>(axis.tag >> 24), static_cast<char>(axis.tag >> 16),
+                         static_cast<char>(axis.tag >> 8), static_cast<char>(axis.tag)};
+    at.axes.emplace_back(std::string(tag, 4), axis.value);
+  }
+  for (const Face& face : faces_)
+    if (face.isInstance && face.source == at) return face.font.get();
+  GpgpFontCreateInfo info = init<GpgpFontCreateInfo>();
+  info.filePath = at.file.c_str();
+  info.face = at.face;
+  info.axes = axes.data();
+  info.axisCount = static_cast<uint32_t>(axes.size());
+  Result<Font> font = Font::create(info);
+  if (!font) return faces_[index].font.get();
+  const Result<GpgpFontInfo> about = font->info();
+  if (!about) return faces_[index].font.get();
+  faces_.push_back({std::move(*font), *about, {}, span.weight, 100, span.italic != 0, std::move(at), true});
+  return faces_.back().font.get();
 }
 
 std::vector<GpgpFont> SvgText::chosen(const GpgpSvgTextSpan& span, std::string_view text) {
@@ -126,24 +191,46 @@ std::vector<GpgpFont> SvgText::chosen(const GpgpSvgTextSpan& span, std::string_v
   const auto rank = [&](const Face& face) { // the smallest first
     const auto at = std::find_if(families.begin(), families.end(),
                                  [&](const std::string& name) { return isFamily(face.family, lowered(name)); });
-    return std::tuple(at - families.begin(), face.italic != (span.italic != 0),
-                      weightDistance(span.weight, face.weight));
+    return std::tuple(at - families.begin(), stretchDistance(span.stretch > 0 ? span.stretch : 100, face.stretch),
+                      face.italic != (span.italic != 0), weightDistance(span.weight, face.weight));
   };
-  std::vector<const Face*> order;
-  for (const Face& face : faces_) order.push_back(&face);
-  std::stable_sort(order.begin(), order.end(), [&](const Face* a, const Face* b) { return rank(*a) < rank(*b); });
+  std::vector<size_t> order;
+  for (size_t i = 0; i < faces_.size(); ++i)
+    if (!faces_[i].isInstance) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return rank(faces_[a]) < rank(faces_[b]); });
   std::vector<GpgpFont> fonts;
-  for (const Face* face : order) fonts.push_back(face->font.get());
+  for (const size_t face : order) fonts.push_back(instance(face, span));
   return fonts;
 }
 
 void SvgText::shapeAs(const GpgpSvgText& text, const GpgpSvgTextSpan& span, std::vector<Cluster>& clusters) {
+  shapeWith(text, span, false, clusters);
+  if (!span.vertical) return;
+  std::vector<Cluster> replaced;
+  shapeWith(text, span, true, replaced);
+  const auto isSame = [](const Cluster::Glyph& a, const Cluster::Glyph& b) { return a.glyph == b.glyph; };
+  std::vector<Cluster*> from(text.size, nullptr); // by their first bytes
+  for (Cluster& cluster : replaced) from[cluster.begin] = &cluster;
+  for (Cluster& cluster : clusters) {
+    Cluster* own = from[cluster.begin];
+    if (!own || own->end != cluster.end ||
+        !gpgp::vector::svg::hasVerticalForm(gpgp::vector::svg::characterAt({text.text, text.size}, cluster.begin)))
+      continue;
+    if (std::ranges::equal(own->glyphs, cluster.glyphs, isSame)) continue;
+    cluster = std::move(*own);
+    for (Cluster::Glyph& glyph : cluster.glyphs) glyph.vertical = true;
+  }
+}
+
+void SvgText::shapeWith(const GpgpSvgText& text, const GpgpSvgTextSpan& span, bool vertical,
+                        std::vector<Cluster>& clusters) {
   const std::vector<GpgpFont> fonts = chosen(span, {text.text, text.size});
   std::vector<GpgpFontFeature> features;
   if (span.smallCaps) features.push_back({GPGP_TAG('s', 'm', 'c', 'p'), 1});
   if (span.unkerned) features.push_back({GPGP_TAG('k', 'e', 'r', 'n'), 0});
   if (span.unligated)
     for (const GpgpTag tag : {GPGP_TAG('l', 'i', 'g', 'a'), GPGP_TAG('c', 'l', 'i', 'g')}) features.push_back({tag, 0});
+  if (vertical) features.push_back({GPGP_TAG('v', 'e', 'r', 't'), 1});
   GpgpTextInfo info = init<GpgpTextInfo>();
   info.text = text.text;
   info.size = text.size;
@@ -185,15 +272,21 @@ void SvgText::shapeAs(const GpgpSvgText& text, const GpgpSvgTextSpan& span, std:
       pen = cluster.left + cluster.width;
     }
     Cluster& cluster = clusters.back();
-    cluster.glyphs.push_back({glyph.font, glyph.glyph, glyph.x - cluster.left, glyph.y - line.baseline});
+    cluster.glyphs.push_back({glyph.font, glyph.glyph, glyph.x - cluster.left, glyph.y - line.baseline, false});
   }
+  // The first, which has the advance, stands where the cluster begins; from right to left marks come before it.
+  const auto isNearer = [](const Cluster::Glyph& a, const Cluster::Glyph& b) {
+    return std::fabs(a.x) < std::fabs(b.x);
+  };
+  for (Cluster& cluster : clusters)
+    std::iter_swap(cluster.glyphs.begin(), std::min_element(cluster.glyphs.begin(), cluster.glyphs.end(), isNearer));
 }
 
 // Each style shapes the whole line, and its spans take their clusters of that: letters are kerned across styles.
 void SvgText::shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyphData) {
   const auto styleOf = [](const GpgpSvgTextSpan& s) {
     return std::tuple(std::string_view(s.families), std::string_view(s.language), s.weight, s.letterSpacing / s.size,
-                      s.italic != 0, s.smallCaps != 0, s.unkerned != 0, s.unligated != 0);
+                      s.italic != 0, s.smallCaps != 0, s.unkerned != 0, s.unligated != 0, s.stretch, s.vertical != 0);
   };
   // Spans of further styles are shaped by themselves, so that long lines are not shaped again and again.
   const size_t mostStyles = std::clamp<size_t>(65536 / std::max(text.size, 1u), 1, 64);
@@ -248,6 +341,7 @@ void SvgText::shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyph
       out.x = pen + glyph.x * scale;
       out.y = glyph.y * scale;
       out.size = cluster.size;
+      out.vertical = glyph.vertical;
       out.advance = &glyph == cluster.glyphs.data() ? cluster.width * scale : 0;
       const GpgpFontInfo& own = face->info;
       out.ascent = own.ascent, out.descent = own.descent, out.xHeight = own.xHeight;

@@ -33,16 +33,18 @@ private:
     Font font;
     GpgpFontInfo info;
     std::string family; ///< in small letters
-    float weight = 400;
+    float weight = 400, stretch = 100;
     bool italic = false;
-    SystemFont source{}; ///< of one of the system's
+    SystemFont source{};     ///< where it comes from, and at which values of its axes
+    bool isInstance = false; ///< of another one, which has axes
   };
   /// What stands for some characters, as a line has it from left to right; lengths are at the size of layouts.
   struct Cluster {
     struct Glyph {
       GpgpFont font;
       uint32_t glyph;
-      float x, y; ///< from where the cluster begins on the baseline
+      float x, y;            ///< from where the cluster begins on the baseline
+      bool vertical = false; ///< for vertical lines
     };
     uint32_t begin = 0, end = 0;         ///< bytes
     float left = 0, width = 0, size = 0; ///< size: what is asked for
@@ -53,7 +55,11 @@ private:
   void shape(const GpgpSvgText& text, GpgpSvgGlyphFn glyphFn, void* glyphData);
   /// The whole line in the style of one span.
   void shapeAs(const GpgpSvgText& text, const GpgpSvgTextSpan& span, std::vector<Cluster>& clusters);
+  /// The same with the fonts' glyphs for vertical lines or without.
+  void shapeWith(const GpgpSvgText& text, const GpgpSvgTextSpan& span, bool vertical, std::vector<Cluster>& clusters);
   std::vector<GpgpFont> chosen(const GpgpSvgTextSpan& span, std::string_view text);
+  /// The face itself, or one at the values of its axes that the text asks for.
+  GpgpFont instance(size_t face, const GpgpSvgTextSpan& span);
   std::vector<GpgpFont> chosenOfSystem(const GpgpSvgTextSpan& span, std::string_view text);
 
   bool fromSystem_ = false;

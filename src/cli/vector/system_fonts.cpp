@@ -82,15 +82,16 @@ bool SystemFonts::areThere() { return true; }
 
 SystemFonts::SystemFonts() : config_(FcInitLoadConfigAndFonts()) {}
 
-std::vector<SystemFont> SystemFonts::find(const std::vector<std::string>& families, float weight, bool italic,
+std::vector<SystemFont> SystemFonts::find(const std::vector<std::string>& families, const FontStyle& style,
                                           const std::string& language, std::string_view text) const {
   if (!config_) return {};
   const Pattern wanted(FcPatternCreate());
   for (const std::string& family : families) FcPatternAddString(wanted.get(), FC_FAMILY, bytes(family));
   if (areUnknown(config_.get(), families)) // as browsers and resvg have it
     FcPatternAddString(wanted.get(), FC_FAMILY, bytes("serif"));
-  FcPatternAddDouble(wanted.get(), FC_WEIGHT, FcWeightFromOpenTypeDouble(static_cast<double>(weight)));
-  FcPatternAddInteger(wanted.get(), FC_SLANT, italic ? FC_SLANT_ITALIC : FC_SLANT_ROMAN);
+  FcPatternAddDouble(wanted.get(), FC_WEIGHT, FcWeightFromOpenTypeDouble(static_cast<double>(style.weight)));
+  FcPatternAddInteger(wanted.get(), FC_SLANT, style.italic ? FC_SLANT_ITALIC : FC_SLANT_ROMAN);
+  FcPatternAddDouble(wanted.get(), FC_WIDTH, static_cast<double>(style.stretch)); // whose numbers are percent
   FcPatternAddBool(wanted.get(), FC_SCALABLE, FcTrue);
   if (!language.empty()) FcPatternAddString(wanted.get(), FC_LANG, bytes(language));
   FcConfigSubstitute(config_.get(), wanted.get(), FcMatchPattern);
@@ -124,7 +125,7 @@ namespace gpgp::cli {
 void SystemFonts::Closer::operator()(_FcConfig*) const {}
 bool SystemFonts::areThere() { return false; }
 SystemFonts::SystemFonts() = default;
-std::vector<SystemFont> SystemFonts::find(const std::vector<std::string>&, float, bool, const std::string&,
+std::vector<SystemFont> SystemFonts::find(const std::vector<std::string>&, const FontStyle&, const std::string&,
                                           std::string_view) const {
   return {};
 }

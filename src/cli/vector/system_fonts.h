@@ -18,6 +18,13 @@ struct SystemFont {
   bool operator==(const SystemFont&) const = default;
 };
 
+/// What is asked for besides a family.
+struct FontStyle {
+  float weight = 400;  ///< from 1 to 1000
+  float stretch = 100; ///< percent
+  bool italic = false;
+};
+
 class SystemFonts {
 public:
   /// Whether the command is built with fontconfig.
@@ -25,8 +32,8 @@ public:
   /// Reads what fontconfig knows, which takes some time.
   SystemFonts();
   /// The one that fits best, then others for the characters of the UTF-8 text that it does not have. `families` as
-  /// font-family lists them; `weight` from 1 to 1000.
-  std::vector<SystemFont> find(const std::vector<std::string>& families, float weight, bool italic,
+  /// font-family lists them.
+  std::vector<SystemFont> find(const std::vector<std::string>& families, const FontStyle& style,
                                const std::string& language, std::string_view text) const;
 
 private:

@@ -12,11 +12,13 @@ struct BoxForms {
   uint32_t flat = 0;    ///< xz, normal +y, first edge along +x at the far end of z
   uint32_t upright = 0; ///< xy, normal +z, first edge along +x
   uint32_t box = 0;     ///< faces: bottom, front (+z), right, back, left, top
+  bool areUsed = true;  ///< not where faces shall be told apart by their tags: these meshes have none
 
   void write(MeshPool& pool);
-  bool is(const Form& form) const {
-    return form.mesh != 0 && (form.mesh == box || form.mesh == flat || form.mesh == upright) &&
-           form.scale == form.scope.size;
+  bool is(const Form& form) const { return areUsed && isShared(form) && form.scale == form.scope.size; }
+  /// Its mesh is one of these, which nothing may write to.
+  bool isShared(const Form& form) const {
+    return form.mesh != 0 && (form.mesh == box || form.mesh == flat || form.mesh == upright);
   }
   /// Fitted to the scope.
   Form make(const Scope& scope, uint32_t mesh) const;

@@ -3,6 +3,7 @@
 
 #include "core/suggest.h"
 #include "spawn/cga/compiler.h"
+#include "spawn/cga/files.h"
 #include "spawn/cga/lower.h"
 
 #include <algorithm>
@@ -48,11 +49,15 @@ void Compiler::chunk(uint32_t label, const std::string& name, size_t parameters,
   emit(static_cast<uint32_t>(locals));
 }
 
-void Compiler::refer(const Context& context, Entity& to) { references_[context.entity].push_back(&to); }
+void Compiler::refer(const Context& context, Entity& to) {
+  references_[context.entity].push_back(&to);
+  if (choices_ == 0) certain_.insert({context.entity, &to});
+}
 
 void Compiler::assignSlots() {
   for (const auto& module : modules_->all())
     for (auto& [name, entity] : module->entities) {
+      if (entity.same) continue;
       entity.label = newLabel();
       if (entity.kind != Definition::Kind::attribute && entity.kind != Definition::Kind::constant) continue;
       if (entity.kind == Definition::Kind::constant && !entity.definition->parameters.empty()) {
@@ -105,6 +110,7 @@ void Compiler::definitions() {
              std::pair(b->definition->place.line, b->definition->place.column);
     });
     for (Entity* entity : entities) {
+      if (entity->same) continue;
       definition(*entity);
       if (entity->kind != Definition::Kind::rule) continue;
       RuleInfo rule;
@@ -120,8 +126,9 @@ void Compiler::definitions() {
   }
 }
 
-/// Slots that the start rule can reach, each behind those that its value needs.
-void Compiler::order(Entity& start) {
+/// Slots that roots can reach, each behind those that its value needs. Cycles are told where tells says so.
+std::vector<uint32_t> Compiler::order(const std::vector<Entity*>& roots, bool tells) {
+  std::vector<uint32_t> result;
   enum class State : uint8_t { untouched, open, done };
   std::unordered_map<Entity*, State> states;
   struct Visit {
@@ -132,9 +139,15 @@ void Compiler::order(Entity& start) {
     return e.kind == Definition::Kind::attribute || e.kind == Definition::Kind::constant;
   };
   std::set<uint32_t> ordered;
-  std::vector<Visit> stack{{&start}};
-  states[&start] = State::open;
-  while (!stack.empty()) {
+  std::vector<Visit> stack;
+  size_t root = 0;
+  while (!stack.empty() || root < roots.size()) {
+    if (stack.empty()) {
+      Entity* next = roots[root++];
+      if (!next || states[next] != State::untouched) continue;
+      states[next] = State::open;
+      stack.push_back({next});
+    }
     Visit& visit = stack.back();
     const std::vector<Entity*>& to = references_[visit.entity];
     if (visit.next < to.size()) {
@@ -143,10 +156,16 @@ void Compiler::order(Entity& start) {
       if (state == State::untouched) {
         state = State::open;
         stack.push_back({next});
-      } else if (state == State::open && isSlot(*next)) {
-        // A cycle by way of functions may never be run; what does run sees the value 0.
+      } else if (tells && state == State::open && isSlot(*next)) {
+        // A cycle by way of functions, or of one of several values, may never be run; what does run sees the value 0.
         bool isDirect = true;
-        for (auto it = stack.rbegin(); it != stack.rend() && it->entity != next; ++it) isDirect &= isSlot(*it->entity);
+        Entity* behind = next;
+        for (auto it = stack.rbegin(); it != stack.rend(); ++it) {
+          isDirect &= isSlot(*it->entity) && certain_.count({it->entity, behind});
+          behind = it->entity;
+          if (it->entity == next) break;
+        }
+        mayNeedItself_ |= !isDirect;
         const Definition& d = *next->definition;
         if (isDirect)
           messages_.error(next->scope->file->path, d.place, "the value of '" + d.name + "' needs itself");
@@ -156,10 +175,11 @@ void Compiler::order(Entity& start) {
       }
       continue;
     }
-    if (isSlot(*visit.entity)) program_.order.push_back(visit.entity->slot);
+    if (isSlot(*visit.entity)) result.push_back(visit.entity->slot);
     states[visit.entity] = State::done;
     stack.pop_back();
   }
+  return result;
 }
 
 namespace {
@@ -195,11 +215,17 @@ void Compiler::attributes() {
       info.place = d.place;
       info.isConstant = entity->kind == Definition::Kind::constant;
       info.chunk = labels_[entity->label];
-      for (const Annotation& a : d.annotations) {
+      const auto add = [&](const Annotation& a) {
         AttributeAnnotation annotation{a.name, {}};
         for (const AnnotationArgument& argument : a.arguments) annotation.values.push_back(valueOf(argument));
         info.annotations.push_back(std::move(annotation));
-      }
+      };
+      if (d.group && !d.group->arguments.empty()) add(*d.group); // @Group alone leaves the group
+      for (const Annotation& a : d.annotations) add(a);
+      const bool isHidden = entity->owner->hidesAll || entity->owner->hides.count(d.name);
+      const auto isSaid = [](const AttributeAnnotation& a) { return a.name == "Hidden"; };
+      if (isHidden && std::none_of(info.annotations.begin(), info.annotations.end(), isSaid))
+        info.annotations.push_back({"Hidden", {}});
     } else {
       info.isMaterial = true;
     }
@@ -248,10 +274,21 @@ std::optional<Program> Compiler::run(const std::string& text) {
   assignSlots();
   definitions();
   Entity* start = startRule(*main);
-  if (start) order(*start);
+  if (start) {
+    program_.order = order({start}, true);
+    program_.wholeOrder = order(slots_, false);
+    // Where values may need each other in a ring, those that were chosen are right when they were worked out again.
+    for (std::vector<uint32_t>* slots : {&program_.order, &program_.wholeOrder}) {
+      const std::vector<uint32_t> once = *slots;
+      if (mayNeedItself_) slots->insert(slots->end(), once.begin(), once.end());
+    }
+  }
   if (messages_.hasErrors() || !start) return std::nullopt;
   attributes();
   for (const auto& [at, label] : fixups_) program_.words[at] = labels_[label];
+  // A rule that asks for labels runs when all shapes of the generation before it have theirs.
+  for (const size_t at : lastInvokes_)
+    if (asksContext_) program_.words[at] = kCgaInvokeCode;
   for (uint32_t i = 0; i < program_.rules.size(); ++i) {
     if (program_.rules[i].chunk == start->label) program_.start = i;
     program_.rules[i].chunk = labels_[program_.rules[i].chunk];
@@ -272,9 +309,9 @@ std::optional<Program> compile(const std::string& text, const CompileOptions& op
 
 ReadFile filesOnDisk() {
   return [](const std::string& path, std::string& text) {
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored)) return false;
-    std::ifstream file(path, std::ios::binary);
+    const std::string found = existingFile(path);
+    if (found.empty()) return false;
+    std::ifstream file(found, std::ios::binary);
     std::ostringstream all;
     all << file.rdbuf();
     text = all.str();

@@ -23,6 +23,13 @@ const char* nameOf(Type type) {
          : type == Type::array   ? "an array"
                                  : "a number";
 }
+/// Whether a question for tags may be for those of extrusions and splits, which cost shapes their shared meshes.
+bool mayBeOwnTag(const Expression& call) {
+  if (call.arguments.empty() || call.arguments[0]->kind != Expression::Kind::string) return true;
+  const std::string_view query = call.arguments[0]->text;
+  return query.empty() || query[0] == '*' || query[0] == '?' || query.starts_with("extrude") ||
+         query.starts_with("split");
+}
 } // namespace
 
 Module* Compiler::resolve(const std::string& path, const Context& context, std::string& last, bool& isMissing) {
@@ -81,6 +88,16 @@ Type Compiler::expression(const Expression& e, const Context& context, bool sele
       return Type::number;
     }
     const Type type = expression(*e.arguments[0], context);
+    if (e.text == ".!" || e.text == ".-") {
+      source(context, e.place);
+      if (e.text == ".!") {
+        emit(kCgaFunctionCode, {static_cast<uint32_t>(Function::eachNot_), 1});
+      } else { // -1 times each
+        emit(kCgaPushFloatCode, {floatBitsToUint(-1.0f)});
+        emit(kCgaEachCode, {kCgaMultiplyCode});
+      }
+      return Type::array;
+    }
     const bool isNot = e.text == "!";
     if (type == Type::string || type == Type::array || (!isNot && type == Type::boolean))
       messages_.error(context.file(), e.place, "'" + e.text + "' stands before " + nameOf(type));
@@ -96,17 +113,46 @@ Type Compiler::expression(const Expression& e, const Context& context, bool sele
     for (const ExpressionPtr& a : e.arguments) expression(*a, context);
     emit(kCgaIndexCode, {static_cast<uint32_t>(e.arguments.size() - 1)});
     return Type::unknown;
-  case Expression::Kind::range:
+  case Expression::Kind::range: {
+    bool isOpen = false;
     for (const ExpressionPtr& a : e.arguments) {
       if (a)
         expression(*a, context);
       else
-        emit(kCgaPushNothingCode);
+        emit(kCgaPushNothingCode), isOpen = true;
     }
-    emit(kCgaRangeCode);
+    source(context, e.place);
+    if (isOpen)
+      emit(kCgaRangeCode);
+    else
+      emit(kCgaFunctionCode, {static_cast<uint32_t>(Function::sequence_), static_cast<uint32_t>(e.arguments.size())});
     return Type::unknown;
+  }
+  case Expression::Kind::components: {
+    PendingPart pending{&e.parts, false, {}, context, newLabel()};
+    arguments(e.text, e.arguments, context);
+    uint32_t count = static_cast<uint32_t>(e.arguments.size());
+    checkCount(context.file(), e.place, e.text, e.arguments.size(), 1, 2);
+    selectors(e.parts, context, true, count, pending.selectors);
+    source(context, e.place);
+    emit(kCgaBlockCode, {static_cast<uint32_t>(Operation::componentValues_), count});
+    emitLabel(pending.label);
+    pending_.push_back(std::move(pending));
+    emit(kCgaFunctionCode, {static_cast<uint32_t>(Function::componentResult_), 0});
+    return Type::array;
+  }
+  case Expression::Kind::rows:
+    for (const ExpressionPtr& row : e.arguments) expression(*row, context);
+    if (e.arguments.size() > 2000) messages_.error(context.file(), e.place, "an array of more than 2000 rows");
+    source(context, e.place);
+    emit(kCgaFunctionCode, {static_cast<uint32_t>(Function::arrayRows_), static_cast<uint32_t>(e.arguments.size())});
+    return Type::array;
   case Expression::Kind::array:
-    for (const ExpressionPtr& a : e.arguments) expression(*a, context);
+    for (const ExpressionPtr& a : e.arguments) {
+      expression(*a, context);
+      if (a->kind == Expression::Kind::range && (!a->arguments[0] || !a->arguments[1]))
+        messages_.error(context.file(), a->place, "a sequence in an array needs both ends");
+    }
     if (e.arguments.size() > 2000) messages_.error(context.file(), e.place, "an array of more than 2000 values");
     source(context, e.place);
     emit(kCgaArrayCode, {static_cast<uint32_t>(e.arguments.size())});
@@ -133,6 +179,11 @@ Type Compiler::binary(const Expression& e, const Context& context) {
   const Type right = expression(*e.arguments[1], context);
   const bool each = e.text[0] == '.';
   const std::string_view text = each ? std::string_view(e.text).substr(1) : std::string_view(e.text);
+  if (text == "&&" || text == "||") {
+    source(context, e.place);
+    emit(kCgaFunctionCode, {static_cast<uint32_t>(text == "&&" ? Function::eachAnd_ : Function::eachOr_), 2});
+    return Type::array;
+  }
   const uint32_t code =
       std::find_if(std::begin(kBinary), std::end(kBinary), [&](const BinaryCode& b) { return b.text == text; })->code;
   source(context, e.place);
@@ -160,6 +211,7 @@ Type Compiler::choices(const Expression& e, const Context& context) {
   for (size_t i = 0; i < e.choices.size(); ++i) {
     const Choice& c = e.choices[i];
     const uint32_t next = newLabel();
+    if (i == 1) ++choices_;
     if (c.condition) {
       const Type condition = expression(*c.condition, context);
       if (condition == Type::string || condition == Type::array)
@@ -172,7 +224,9 @@ Type Compiler::choices(const Expression& e, const Context& context) {
       hasElse = true;
       if (!isCase) emit(kCgaPopCode);
     }
+    choices_ += i == 0;
     const Type value = expression(*c.value, context);
+    choices_ -= i == 0;
     type = i == 0 || type == value ? value : Type::unknown;
     if (c.condition) {
       emit(kCgaJumpCode);
@@ -180,6 +234,7 @@ Type Compiler::choices(const Expression& e, const Context& context) {
       place(next);
     }
   }
+  if (e.choices.size() > 1) --choices_;
   if (!hasElse) {
     messages_.error(context.file(), e.place, isCase ? "these cases have no else" : "these percentages have no else");
     if (!isCase) emit(kCgaPopCode);
@@ -221,6 +276,7 @@ Type Compiler::name(const Expression& e, const Context& context, bool selectorFi
     }
   }
   if (selectorFirst && e.isCall && e.text == "isTagged" && !e.arguments.empty() && e.arguments.size() <= 2) {
+    program_.asksOwnTags |= mayBeOwnTag(e);
     arguments(e.text, e.arguments, context); // not whether the shape has the tag, but a selector of what has it
     emit(kCgaPushBoolCode, {1});
     source(context, e.place);
@@ -253,6 +309,12 @@ Type Compiler::name(const Expression& e, const Context& context, bool selectorFi
   }
   if (const auto function = findFunction(e.text)) {
     checkCount(context.file(), e.place, e.text, e.arguments.size(), function->least, function->most);
+    if (!function->isMath && function->number == static_cast<uint32_t>(Function::Field_)) field(e, context);
+    if (!function->isMath && function->number >= static_cast<uint32_t>(Function::geometry_isTagged_) &&
+        function->number <= static_cast<uint32_t>(Function::isTagged_))
+      program_.asksOwnTags |= mayBeOwnTag(e);
+    asksContext_ |= !function->isMath && function->number >= static_cast<uint32_t>(Function::inside_) &&
+                    function->number <= static_cast<uint32_t>(Function::contextCompare_);
     arguments(e.text, e.arguments, context);
     source(context, e.place);
     emit(function->isMath ? kCgaMathCode : kCgaFunctionCode,
@@ -273,13 +335,28 @@ Type Compiler::name(const Expression& e, const Context& context, bool selectorFi
     return Type::unknown;
   }
   if (isUnsupportedFunction(e.text)) {
-    messages_.once("function " + e.text, context.file(), e.place, "'" + e.text + "' is not supported, and is 0");
-    nothing();
+    const bool isString = e.text.ends_with("String") || e.text.starts_with("assetNaming");
+    messages_.once("function " + e.text, context.file(), e.place,
+                   "'" + e.text + "' is not supported, and is " + (isString ? "\"\"" : "0"));
+    if (isString)
+      emit(kCgaPushStringCode, {string({})});
+    else
+      nothing();
     return Type::unknown;
   }
   unknownName(e, context);
   nothing();
   return Type::unknown;
+}
+
+/// Notes which field is read where its name is a string.
+void Compiler::field(const Expression& e, const Context& context) {
+  if (e.arguments.size() == 2)
+    messages_.error(context.file(), e.place, "'Field' takes the name of a field, or that, x and z");
+  if (e.arguments.empty() || e.arguments[0]->kind != Expression::Kind::string) return;
+  const std::string& name = e.arguments[0]->text;
+  if (std::none_of(program_.fields.begin(), program_.fields.end(), [&](const FieldRead& f) { return f.name == name; }))
+    program_.fields.push_back({name, context.file(), e.place});
 }
 
 void Compiler::unknownName(const Expression& e, const Context& context) {
@@ -302,9 +379,18 @@ void Compiler::unknownName(const Expression& e, const Context& context) {
   for (const std::string_view other : functionNames()) suggestion.offer(other);
   if (!e.isCall)
     for (const std::string_view other : selectorNames()) suggestion.offer(other);
-  messages_.error(context.file(), e.place,
-                  std::string(e.isCall ? "there is no function '" : "there is no attribute, constant or function '") +
-                      e.text + "'" + suggestion.text());
+  const bool isImported = module != context.scope;
+  if (isImported)
+    for (const auto& [other, entity] : module->entities)
+      if (entity.kind != Definition::Kind::rule)
+        suggestion.offer(e.text.substr(0, e.text.size() - last.size()) + other);
+  if (e.isCall || isImported) // perhaps of a newer version, of CGA or of the file: the rest derives
+    messages_.once("function " + e.text, context.file(), e.place,
+                   std::string(e.isCall ? "there is no function '" : "there is no attribute, constant or function '") +
+                       e.text + "', and it is 0" + suggestion.text());
+  else
+    messages_.error(context.file(), e.place,
+                    "there is no attribute, constant or function '" + e.text + "'" + suggestion.text());
 }
 
 } // namespace gpgp::spawn::cga

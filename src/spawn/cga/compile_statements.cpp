@@ -23,7 +23,7 @@ void Compiler::checkCount(const std::string& file, Place place, std::string_view
 namespace {
 /// Whether random numbers may be drawn for a value.
 bool mayDraw(const Expression& e) {
-  if (e.kind == Expression::Kind::stochastic) return true;
+  if (e.kind == Expression::Kind::stochastic || e.kind == Expression::Kind::components) return true;
   if (e.kind == Expression::Kind::name && (e.isCall || e.text.find('.') == std::string::npos)) return true;
   for (const ExpressionPtr& a : e.arguments)
     if (a && mayDraw(*a)) return true;
@@ -39,7 +39,7 @@ Makes whatMakes(const Statement& s) {
   const auto operation = findOperation(s.name);
   if (!operation) return either(s.name != "NIL" && s.name != "set" && !isUnsupportedOperation(s.name));
   if (*operation == Operation::report_) return Makes::report;
-  if (*operation >= Operation::inline_ && *operation <= Operation::intersect_) return Makes::nothing;
+  if (*operation >= Operation::inline_ && *operation <= Operation::modify_) return Makes::nothing;
   return either(operationInfo(*operation).block != Block::none);
 }
 
@@ -200,6 +200,7 @@ bool Compiler::invoke(const Statement& s, const Context& context, bool isLast) {
   refer(context, *entity);
   for (const ExpressionPtr& a : s.arguments) expression(*a, context);
   source(context, s.place);
+  if (isLast) lastInvokes_.push_back(program_.words.size());
   emit(isLast ? kCgaInvokeLastCode : kCgaInvokeCode);
   emitLabel(entity->label);
   emit(static_cast<uint32_t>(s.arguments.size()));
@@ -219,9 +220,10 @@ void Compiler::unknownStatement(const Statement& s, const Context& context) {
   for (auto it = begin; it != end; ++it)
     if (it->second.kind == Definition::Kind::rule) {
       const size_t takes = it->second.definition->parameters.size();
-      messages_.error(context.file(), s.place,
-                      "the rule '" + s.name + "' takes " + std::to_string(takes) + (takes == 1 ? " value" : " values") +
-                          ", not " + std::to_string(s.arguments.size()));
+      messages_.once("rule " + s.name, context.file(), s.place,
+                     "the rule '" + s.name + "' takes " + std::to_string(takes) + (takes == 1 ? " value" : " values") +
+                         ", not " + std::to_string(s.arguments.size()) + "; shapes end there");
+      emit(kCgaLeafCode, {string(s.name)});
       return;
     }
   core::Suggestion suggestion(s.name);
@@ -229,7 +231,8 @@ void Compiler::unknownStatement(const Statement& s, const Context& context) {
     if (entity.kind == Definition::Kind::rule) suggestion.offer(name);
   for (const std::string_view name : operationNames()) suggestion.offer(name);
   if (s.hasBlock) {
-    messages_.error(context.file(), s.place, "there is no operation '" + s.name + "'" + suggestion.text());
+    messages_.once("operation " + s.name, context.file(), s.place,
+                   "there is no operation '" + s.name + "'; it and its block do nothing" + suggestion.text());
     return;
   }
   // CGA takes it for the name of a shape that ends here.
@@ -274,7 +277,7 @@ void Compiler::set(const Statement& s, const Context& context) {
     const auto [found, isNew] = materials_.try_emplace(target.text, static_cast<uint32_t>(slots_.size()));
     if (isNew) slots_.push_back(nullptr);
     emit(kCgaSetAttributeCode, {found->second});
-  } else if (target.text.starts_with("trim.") || target.text.starts_with("pivot.")) {
+  } else if (target.text.starts_with("pivot.")) {
     messages_.once("set " + target.text, context.file(), target.place,
                    "'" + target.text + "' is not supported, and cannot be set");
     emit(kCgaPopCode);
@@ -298,7 +301,8 @@ void Compiler::selectors(const std::vector<Part>& parts, const Context& context,
     if (!part.selector) continue;
     const bool isShort = part.selector->text.size() == 1; // rather a name of the file
     if (!selectorFirst) drawsOf(*part.selector, numbers.size() - 1);
-    const Type type = expression(*part.selector, context, selectorFirst && !isShort);
+    const bool isRemainder = part.selector->text == "remainder" && !part.depth;
+    const Type type = expression(*part.selector, context, (selectorFirst && !isShort) || isRemainder);
     if (type == Type::string || type == Type::array)
       messages_.error(context.file(), part.selector->place,
                       selectorFirst ? "a selector is a word or a number" : "a size is a number");
@@ -309,8 +313,9 @@ void Compiler::selectors(const std::vector<Part>& parts, const Context& context,
 }
 
 void Compiler::block(const Statement& s, Operation operation, const Context& context) {
-  const bool isSplit = operation == Operation::split_ || operation == Operation::splitArea_;
-  PendingPart pending{&s, {}, context, newLabel()};
+  const bool isPerimeter = operation == Operation::splitAndSetbackPerimeter_;
+  const bool isSplit = operation == Operation::split_ || operation == Operation::splitArea_ || isPerimeter;
+  PendingPart pending{&s.parts, s.repeats, {}, context, newLabel()};
   if (operation == Operation::setbackPerEdge_ && !s.arguments.empty()) {
     pending.perEdge = s.arguments[0].get();
     for (size_t i = 0; i < s.arguments.size(); ++i) {
@@ -332,6 +337,8 @@ void Compiler::block(const Statement& s, Operation operation, const Context& con
   } else if (s.parts.empty()) {
     messages_.error(context.file(), s.place, "this split has no parts");
   }
+  if (isPerimeter && (s.parts.size() != 2 || !s.parts[1].selector || s.parts[1].selector->text != "remainder"))
+    messages_.error(context.file(), s.place, "the second block of splitAndSetbackPerimeter is { remainder : ... }");
   source(context, s.place);
   emit(kCgaBlockCode, {static_cast<uint32_t>(operation), count});
   emitLabel(pending.label);
@@ -340,9 +347,9 @@ void Compiler::block(const Statement& s, Operation operation, const Context& con
 
 /// Tables first, then bodies.
 void Compiler::parts(const PendingPart& pending) {
-  std::vector<std::pair<const Body*, uint32_t>> bodies;
+  std::vector<PartChunk> chunks;
   size_t selector = 0;
-  if (pending.statement->repeats) { // { ... }*: a table of one group
+  if (pending.repeats) { // { ... }*: a table of one group
     place(pending.label);
     emit(1);
     const uint32_t inner = newLabel();
@@ -350,38 +357,42 @@ void Compiler::parts(const PendingPart& pending) {
     emit(kCgaPartRepeated);
     emit(kCgaNoSelector);
     emitLabel(inner);
-    table(pending.statement->parts, pending, selector, inner, nullptr, bodies);
+    table(*pending.parts, pending, selector, inner, nullptr, chunks);
   } else {
-    const uint32_t perEdge = pending.perEdge ? newLabel() : 0;
-    table(pending.statement->parts, pending, selector, pending.label, pending.perEdge ? &perEdge : nullptr, bodies);
-    if (pending.perEdge) {
-      chunk(perEdge, pending.context.name, pending.context.locals.size(), pending.context.locals.size());
-      expression(*pending.perEdge, pending.context);
-      emit(kCgaReturnCode);
-    }
+    table(*pending.parts, pending, selector, pending.label, pending.perEdge, chunks);
   }
-  for (const auto& [code, label] : bodies) {
+  for (const PartChunk& made : chunks) {
     const size_t visible = pending.context.locals.size();
-    chunk(label, pending.context.name, visible, visible);
+    chunk(made.label, pending.context.name, visible, visible);
+    if (made.value) {
+      expression(*made.value, pending.context);
+      emit(kCgaReturnCode);
+      continue;
+    }
     const uint32_t end = newLabel();
-    body(*code, pending.context, true, true, end);
+    body(*made.body, pending.context, true, true, end);
     place(end);
     emit(kCgaEndCode);
   }
 }
 
 void Compiler::table(const std::vector<Part>& parts, const PendingPart& pending, size_t& selector, uint32_t label,
-                     const uint32_t* perEdge, std::vector<std::pair<const Body*, uint32_t>>& bodies) {
+                     const Expression* perEdge, std::vector<PartChunk>& chunks) {
   place(label);
-  const size_t count = parts.size() + (perEdge ? 1 : 0);
+  std::vector<const Expression*> values; // with records behind those of the parts, in the same order
+  for (const Part& part : parts)
+    if (part.depth) values.push_back(part.depth.get());
+  if (perEdge) values.push_back(perEdge);
+  const size_t count = parts.size() + values.size(), offsets = program_.words.size() + 1;
   emit(static_cast<uint32_t>(count));
-  const size_t offsets = program_.words.size();
   for (size_t i = 0; i < count; ++i) emit(0);
-  if (perEdge) {
-    program_.words[offsets + parts.size()] = static_cast<uint32_t>(program_.words.size());
+  for (size_t i = 0; i < values.size(); ++i) {
+    program_.words[offsets + parts.size() + i] = static_cast<uint32_t>(program_.words.size());
+    const uint32_t target = newLabel();
     emit(kCgaPartEach);
     emit(kCgaNoSelector);
-    emitLabel(*perEdge);
+    emitLabel(target);
+    chunks.push_back({nullptr, values[i], target});
   }
   for (size_t i = 0; i < parts.size(); ++i) {
     const Part& part = parts[i];
@@ -391,12 +402,12 @@ void Compiler::table(const std::vector<Part>& parts, const PendingPart& pending,
       emit(part.repeats ? kCgaPartRepeated : kCgaPartGroup);
       emit(kCgaNoSelector);
       emitLabel(target);
-      table(part.group, pending, selector, target, nullptr, bodies);
+      table(part.group, pending, selector, target, nullptr, chunks);
     } else {
-      emit(part.isOneShape ? kCgaPartTogether : kCgaPartEach);
+      emit(part.isConnected ? kCgaPartConnected : part.isOneShape ? kCgaPartTogether : kCgaPartEach);
       emit(pending.selectors[selector++]);
       emitLabel(target);
-      bodies.push_back({&part.body, target});
+      chunks.push_back({&part.body, part.value.get(), target});
     }
   }
 }

@@ -51,18 +51,26 @@ public:
 
 private:
   struct PendingPart {
-    const Statement* statement;
+    const std::vector<Part>* parts;
+    bool repeats;
     std::vector<uint32_t> selectors; // of its parts, in the order of a walk
     Context context;
     uint32_t label;
     const Expression* perEdge = nullptr; // a value that is worked out for each edge: a chunk behind the parts'
   };
 
+  /// What a record of a table leads to: a body, or a value.
+  struct PartChunk {
+    const Body* body;
+    const Expression* value;
+    uint32_t label;
+  };
+
   // compile.cpp
   void assignSlots();
   void definitions();
   void definition(Entity& entity);
-  void order(Entity& start);
+  std::vector<uint32_t> order(const std::vector<Entity*>& roots, bool tells);
   void attributes();
   Entity* startRule(Module& main);
   uint32_t string(const std::string& text);
@@ -84,6 +92,7 @@ private:
   Type choices(const Expression& e, const Context& context);
   bool literal(const Entity& entity, Type& type);
   Module* resolve(const std::string& path, const Context& context, std::string& last, bool& isMissing);
+  void field(const Expression& e, const Context& context);
   void unknownName(const Expression& e, const Context& context);
   void nothing() { emit(shader::kCgaPushFloatCode, {0}); }
 
@@ -99,8 +108,9 @@ private:
   void unknownStatement(const Statement& s, const Context& context);
   void checkCount(const std::string& file, Place place, std::string_view name, size_t count, size_t least, size_t most);
   void parts(const PendingPart& pending);
+  /// perEdge: a value that has a record behind those of the parts.
   void table(const std::vector<Part>& parts, const PendingPart& pending, size_t& selector, uint32_t label,
-             const uint32_t* perEdge, std::vector<std::pair<const Body*, uint32_t>>& bodies);
+             const Expression* perEdge, std::vector<PartChunk>& chunks);
   void selectors(const std::vector<Part>& parts, const Context& context, bool selectorFirst, uint32_t& count,
                  std::vector<uint32_t>& numbers);
 
@@ -114,6 +124,11 @@ private:
   std::vector<std::pair<uint32_t, uint32_t>> fixups_; // word, label
   std::vector<PendingPart> pending_;
   std::unordered_map<Entity*, std::vector<Entity*>> references_;
+  std::vector<size_t> lastInvokes_;               // words
+  bool asksContext_ = false;                      // for labelled shapes
+  uint32_t choices_ = 0;                          // whose values are compiled
+  std::set<std::pair<Entity*, Entity*>> certain_; // references that are needed whatever is chosen
+  bool mayNeedItself_ = false;
   std::vector<Entity*> slots_; // by slot; none: of a material
   std::unique_ptr<Modules> modules_;
 };

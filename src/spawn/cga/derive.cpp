@@ -16,6 +16,19 @@ struct AxiomBlock {
   Messages messages;
 };
 
+constexpr uint32_t kMostJobs = 64; ///< each has a machine of its own, some MiB
+
+size_t threadsOf(const DeriveOptions& options) {
+  return options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+}
+
+void runOnThreads(size_t count, const std::function<void()>& work) {
+  std::vector<std::thread> threads;
+  for (size_t i = 1; i < count; ++i) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+}
+
 /// Where a part's strings stand in all: the program's as they are, others once.
 std::vector<uint32_t> takeNames(Derivation& all, const Derivation& part, size_t programStrings) {
   std::vector<uint32_t> places;
@@ -75,12 +88,10 @@ Derivation derive(const Program& program, const std::vector<Axiom>& axioms, cons
         deriver->run(axioms[i], static_cast<uint32_t>(i), blocks[b].derivation, blocks[b].messages);
     }
   };
-  const size_t wanted = options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
-  const size_t count = std::min(wanted, blocks.size());
-  std::vector<std::thread> threads;
-  for (size_t i = 1; i < count; ++i) threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
+  if (options.parallelFor)
+    options.parallelFor(static_cast<uint32_t>(std::min<size_t>(blocks.size(), kMostJobs)), work);
+  else
+    runOnThreads(std::min(threadsOf(options), blocks.size()), work);
   Derivation result;
   for (AxiomBlock& block : blocks) {
     if (result.names.empty())
@@ -91,6 +102,10 @@ Derivation derive(const Program& program, const std::vector<Axiom>& axioms, cons
   }
   if (result.names.empty()) result.names = program.strings;
   return result;
+}
+
+std::vector<FirstValue> firstValues(const Program& program, const DeriveOptions& options, Messages& messages) {
+  return std::make_unique<Deriver>(program, options)->firstValues({}, messages);
 }
 
 } // namespace gpgp::spawn::cga

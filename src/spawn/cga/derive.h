@@ -5,6 +5,7 @@
 #pragma once
 #include "spawn/cga/modules.h"
 #include "spawn/cga/program.h"
+#include "spawn/shared/layout.h"
 
 #include <functional>
 #include <glm/vec2.hpp>
@@ -15,6 +16,26 @@
 #include <vector>
 
 namespace gpgp::spawn::cga {
+
+/// Values of the edges of an axiom's polygon, in the order of its points, as texts; what is missing is empty.
+struct EdgeAttribute {
+  std::string name;
+  std::vector<std::string> values;
+  bool isString = true; ///< not all of them are numbers, true or false
+};
+
+/// A field of the world (shaders/spawn/shared/field.h), which functions and attributes read by name.
+struct WorldField {
+  std::string name;
+  shader::FieldGrid grid{};
+  const float* values = nullptr; ///< from the grid's first one on
+};
+
+/// Where the origin of the world lies: degrees.
+struct GeographicPlace {
+  double longitude = 0, latitude = 0;
+};
+constexpr double kMetresOfADegree = 111319.490793; ///< of latitude
 
 /// A start shape. World space, metres, y up.
 struct Axiom {
@@ -29,12 +50,14 @@ struct Axiom {
   std::vector<AttributeValue> attributes;
   /// Of the street beside each edge of the polygon, 0: none; empty: nothing is known of streets.
   std::vector<float> streetWidths;
+  std::vector<EdgeAttribute> edgeAttributes;
 };
 
-/// A file's triangles for i(): positions and indices.
+/// A file's triangles for i(): positions and indices, and the names that the file has for their groups and materials.
 struct Asset {
   std::vector<glm::vec3> positions;
   std::vector<uint32_t> indices;
+  std::vector<std::string> groups, materials;
 };
 
 struct DeriveOptions {
@@ -46,12 +69,18 @@ struct DeriveOptions {
   uint32_t maxVertices = 1'000'000;    ///< of one shape
   uint32_t maxGeometryMiB = 2048;      ///< of all meshes that one axiom makes, and of the triangles that are kept
   uint64_t maxWork = 1'000'000'000;    ///< of one axiom's geometry: words written and corners looked at
-  uint32_t threads = 0;                ///< 0: as many as the machine has
-  bool keepTriangles = true;           ///< else they are only counted
-  bool keepScopes = false;             ///< Derivation::scopes
+  uint32_t threads = 0;                ///< 0: as many as the machine has; not with parallelFor
+  /// Calls work that often, on as many threads as there are. None: threads of its own.
+  std::function<void(uint32_t count, const std::function<void()>& work)> parallelFor;
+  bool keepTriangles = true; ///< else they are only counted
+  bool keepScopes = false;   ///< Derivation::scopes
   std::vector<AttributeValue> attributes;
+  /// An attr of a field's name has the field's value at the middle of the axiom, where nothing else sets it.
+  std::vector<WorldField> fields;
+  std::optional<GeographicPlace> origin;
   /// Reads a file for i(); false: it cannot, and text says why.
   std::function<bool(const std::string& path, Asset& asset, std::string& text)> loadAsset;
+  bool assetsAreFiles = true; ///< loadAsset gets paths of files on the disk alone
 };
 
 /// A shape in which a derivation ends.
@@ -99,6 +128,16 @@ struct Derivation {
 /// Messages get what went wrong on the way, once a kind, with its place; exceeded limits are errors.
 Derivation derive(const Program& program, const std::vector<Axiom>& axioms, const DeriveOptions& options,
                   Messages& messages);
+
+/// A value that an attribute has where nobody sets it.
+struct FirstValue {
+  uint32_t type = 0; ///< kCgaFloat and so on (shaders/spawn/cga/program_format.h)
+  double number = 0;
+  std::string text;
+  std::vector<std::string> elements; ///< of an array
+};
+/// By slots of attributes, on a lot of 1 x 1 metres with seed 1.
+std::vector<FirstValue> firstValues(const Program& program, const DeriveOptions& options, Messages& messages);
 
 /// Puts a part behind what there is. places: of the part's names, in all.names.
 void append(Derivation& all, Derivation&& part, const std::vector<uint32_t>& places);

@@ -37,33 +37,55 @@ void Deriver::fail(const std::string& what) {
   stopped_ = true;
 }
 
+void Deriver::clear() {
+  noRoom_ = stopped_ = false;
+  shapes_ = printCount_ = 0;
+  deepest_ = 0;
+  strings_.clear();
+  queue_.clear();
+  queueValues_.clear();
+  leaves_.clear();
+  blocks_.assign(1, {});
+  changes_.assign(1, {});
+  projections_.assign(1, {});
+  trims_.assign(1, {});
+  arrays_.clear();
+  arrayValues_ = 0;
+  labels_.clear();
+  tagNames_.clear();
+  stackBase_ = nested_ = 0;
+  reports_.clear();
+  prints_.clear();
+  assetForms_.clear();
+  pool_.clear();
+  pool_.steps = 0;
+  pool_.mostSteps = options_.maxWork;
+  operation_ = {};
+  boxes_.write(pool_);
+  boxes_.areUsed = !program_.asksOwnTags;
+}
+
+std::vector<FirstValue> Deriver::firstValues(const Axiom& axiom, Messages& messages) {
+  axiom_ = &axiom;
+  messages_ = &messages;
+  clear();
+  std::vector<FirstValue> values(program_.attributes.size());
+  if (!start(axiom, 0) || stopped_ || noRoom_) return values;
+  attributes(axiom, program_.wholeOrder);
+  for (size_t slot = 0; slot < values.size(); ++slot) {
+    const CgaValue& value = blocks_[shape_.values + slot];
+    values[slot] = {value.type, static_cast<double>(cgaNumber(value)), text(value), {}};
+    if (value.type == kCgaArray)
+      for (const CgaValue& element : ArrayValue(arrayOf(value)).values) values[slot].elements.push_back(text(element));
+  }
+  return values;
+}
+
 void Deriver::run(const Axiom& axiom, uint32_t number, Derivation& result, Messages& messages) {
   axiom_ = &axiom;
   messages_ = &messages;
   for (;;) {
-    noRoom_ = stopped_ = false;
-    shapes_ = printCount_ = 0;
-    deepest_ = 0;
-    strings_.clear();
-    queue_.clear();
-    queueValues_.clear();
-    leaves_.clear();
-    blocks_.assign(1, {});
-    changes_.assign(1, {});
-    projections_.assign(1, {});
-    arrays_.clear();
-    arrayValues_ = 0;
-    labels_.clear();
-    tagNames_.clear();
-    stackBase_ = nested_ = 0;
-    reports_.clear();
-    prints_.clear();
-    assetForms_.clear();
-    pool_.clear();
-    pool_.steps = 0;
-    pool_.mostSteps = options_.maxWork;
-    operation_ = {};
-    boxes_.write(pool_);
+    clear();
     const size_t firstLeaf = result.leaves.size(), firstVertex = result.vertices.size();
     const size_t firstIndex = result.indices.size();
     if (!start(axiom, number)) return;
@@ -79,7 +101,7 @@ void Deriver::run(const Axiom& axiom, uint32_t number, Derivation& result, Messa
         std::clamp<uint64_t>(uint64_t{options_.maxGeometryMiB} << 18, kFirstPoolWords, kMostPoolWords));
     if (poolWords_ >= most) {
       fail(ruleAndOperation() + ": the meshes of one axiom need more than " + std::to_string(most >> 18) +
-           " MiB; --max-geometry allows more");
+           " MiB; maxGeometryMiB (--max-geometry) allows more");
       return;
     }
     poolWords_ = static_cast<uint32_t>(std::min<uint64_t>(4ull * poolWords_, most));
@@ -130,7 +152,7 @@ bool Deriver::start(const Axiom& axiom, uint32_t number) {
   resetPivot(shape);
   shape_ = shape;
   ruleScope_ = shape.form.scope;
-  attributes(axiom);
+  attributes(axiom, program_.order);
   if (stopped_ || noRoom_) return true;
   const RuleInfo& rule = program_.rules[program_.start];
   shape = shape_;
@@ -141,15 +163,18 @@ bool Deriver::start(const Axiom& axiom, uint32_t number) {
 }
 
 /// Each draws from a key of its own, so that values do not depend on which of them the program needs.
-void Deriver::attributes(const Axiom& axiom) {
+void Deriver::attributes(const Axiom& axiom, const std::vector<uint32_t>& order) {
   const uint32_t count = static_cast<uint32_t>(program_.attributes.size());
   shape_.values = static_cast<uint32_t>(blocks_.size());
   blocks_.resize(blocks_.size() + count);
   const uvec2 key = shape_.key;
+  for (uint32_t slot = 0; slot < count; ++slot)
+    if (program_.attributes[slot].isMaterial)
+      blocks_[shape_.values + slot] = firstOfMaterial(program_.attributes[slot].name);
   std::unordered_map<std::string_view, const std::string*> given;
   for (const AttributeValue& value : options_.attributes) given[value.name] = &value.text;
   for (const AttributeValue& value : axiom.attributes) given.try_emplace(value.name, &value.text);
-  for (const uint32_t slot : program_.order) {
+  for (const uint32_t slot : order) {
     const AttributeInfo& info = program_.attributes[slot];
     CgaValue value = cgaFloatValue(0);
     const auto found = info.isConstant || given.empty() ? given.end() : given.find(info.name);
@@ -160,10 +185,16 @@ void Deriver::attributes(const Axiom& axiom) {
       const std::optional<float> parsed = numberIn(text);
       if (!isString && (text == "true" || text == "false"))
         value = cgaBoolValue(text == "true");
+      else if (!isString && text == "NaN")
+        value = cgaMake(kCgaNothing, 0);
       else if (!isString && parsed)
         value = cgaFloatValue(*parsed);
       else
         value = stringValue(text);
+    } else if (const WorldField* field = info.isConstant || info.isMaterial ? nullptr : fieldNamed(info.name)) {
+      const Scope& s = shape_.form.scope;
+      value = cgaFloatValue(
+          fieldAt(*field, s.origin + (s.axisX * s.size.x + s.axisY * s.size.y + s.axisZ * s.size.z) * 0.5f));
     } else if (info.chunk) {
       attributeSlot_ = slot;
       shape_.draws = 0;
@@ -271,11 +302,12 @@ bool Deriver::enters(uint32_t chunk, uint32_t depth) {
   deepest_ = std::max(deepest_, depth);
   if (depth > options_.maxDepth) {
     fail("rule '" + program_.strings[words_[chunk]] + "' is " + std::to_string(options_.maxDepth) +
-         " rules behind the axiom; --max-depth allows more");
+         " rules behind the axiom; maxDepth (--max-depth) allows more");
     return false;
   }
   if (++shapes_ > options_.maxShapes) {
-    fail("an axiom has more than " + std::to_string(options_.maxShapes) + " shapes; --max-shapes allows more");
+    fail("an axiom has more than " + std::to_string(options_.maxShapes) +
+         " shapes; maxShapes (--max-shapes) allows more");
     return false;
   }
   return true;
@@ -295,14 +327,14 @@ bool Deriver::isWithin(const Form& form) {
   fail(ruleAndOperation() + ": a shape has " + std::to_string(isFaces ? faces : vertices) +
        (isFaces ? " faces, more than " : " vertices, more than ") +
        std::to_string(isFaces ? options_.maxFaces : options_.maxVertices) +
-       (isFaces ? "; --max-faces allows more" : "; --max-vertices allows more"));
+       (isFaces ? "; maxFaces (--max-faces) allows more" : "; maxVertices (--max-vertices) allows more"));
   return false;
 }
 
 bool Deriver::works(uint64_t steps) {
   if (countSteps(pool_, steps)) return true;
   fail(ruleAndOperation() + ": the geometry of one axiom takes more than " +
-       std::to_string(options_.maxWork / 1'000'000) + " million steps; --max-work allows more");
+       std::to_string(options_.maxWork / 1'000'000) + " million steps; maxWork (--max-work) allows more");
   return false;
 }
 
@@ -346,7 +378,8 @@ bool Deriver::addChild(Shape& shape, uint32_t body, uint32_t base) {
   made_ = true;
   if (!isWithin(shape.form) || !works()) return false;
   if (shapes_ + next_.size() > options_.maxShapes) {
-    fail("an axiom has more than " + std::to_string(options_.maxShapes) + " shapes; --max-shapes allows more");
+    fail("an axiom has more than " + std::to_string(options_.maxShapes) +
+         " shapes; maxShapes (--max-shapes) allows more");
     return false;
   }
   return true;
@@ -405,8 +438,8 @@ bool Deriver::cgaPopShape() {
   return true;
 }
 
-void Deriver::writeTriangles(const Form& form, Derivation& result) {
-  if (boxes_.is(form)) {
+void Deriver::writeTriangles(const Form& form, float softAngle, Derivation& result) {
+  if (boxes_.is(form) && !(softAngle > 90)) {
     for (uint32_t f = 0; f < boxes_.faces(form); ++f) {
       const Scope s = boxes_.face(form, f).scope;
       const vec3 x = s.axisX * s.size.x, y = s.axisY * s.size.y;
@@ -425,6 +458,7 @@ void Deriver::writeTriangles(const Form& form, Derivation& result) {
   std::vector<uint32_t> indices;
   const Status status = triangulate(pool_, form, vertices, indices);
   if (!works()) return;
+  softenNormals(vertices, softAngle);
   if (status == kGeometryNoRoom) noRoom_ = true;
   if (status != kGeometryOk && status != kGeometryEmpty && status != kGeometryNoRoom)
     warn("triangulate", "a shape is not drawn: " + std::string(describeStatus(status)));
@@ -470,7 +504,7 @@ void Deriver::writeLeaves(Derivation& result, uint32_t number, size_t firstLeaf)
     leaf.texture = shape.texture;
     leaf.color = shape.color;
     leaf.firstIndex = static_cast<uint32_t>(result.indices.size());
-    if (shape.form.mesh) writeTriangles(shape.form, result);
+    if (shape.form.mesh) writeTriangles(shape.form, shape.softAngle, result);
     leaf.indexCount = static_cast<uint32_t>(result.indices.size()) - leaf.firstIndex;
     result.leaves.push_back(leaf);
     if (options_.keepScopes) result.scopes.push_back(scopeOf(shape));
@@ -478,7 +512,7 @@ void Deriver::writeLeaves(Derivation& result, uint32_t number, size_t firstLeaf)
                            sizeof(uint32_t) * (result.indices.size() - firstIndex);
     if (bytes > uint64_t{options_.maxGeometryMiB} << 20)
       fail("the triangles of one axiom need more than " + std::to_string(options_.maxGeometryMiB) +
-           " MiB; --max-geometry allows more");
+           " MiB; maxGeometryMiB (--max-geometry) allows more");
     if (stopped_) break;
     if (noRoom_) {
       result.triangles = before;

@@ -33,6 +33,9 @@ struct Shape {
   uint32_t values = 0, changes = 0; ///< attributes: a block of all, and a chain of what was set since
   uint32_t changeCount = 0;         ///< length of that chain
   uint32_t projections = 0;         ///< chain of what setupProjection() said
+  uint32_t trims = 0;               ///< chain of planes that cut off what is inserted
+  bool trimsHorizontal = false, trimsVertical = true;
+  float softAngle = 0;                                 ///< degrees below which normals are smooth across edges
   uint32_t chunk = 0, first = 0, count = 0, depth = 0; ///< the rule, its values, how many rules came before
 };
 
@@ -41,6 +44,7 @@ public:
   Deriver(const Program& program, const DeriveOptions& options);
   /// Adds what comes of an axiom.
   void run(const Axiom& axiom, uint32_t number, Derivation& result, Messages& messages);
+  std::vector<FirstValue> firstValues(const Axiom& axiom, Messages& messages);
 
 private:
   struct Change {
@@ -51,15 +55,25 @@ private:
     uint32_t set, next;
     UvProjection map;
   };
+  struct Trim {
+    uint32_t next = 0;
+    TrimPlane plane;
+    bool isHorizontal = false; ///< its edge is less than 40 degrees from the x axis of the face
+  };
   struct ArrayValue {
+    static constexpr uint32_t kOneRow = UINT32_MAX;
     std::vector<CgaValue> values; ///< row by row
-    uint32_t columns = 1;
-    uint32_t rows() const { return columns ? static_cast<uint32_t>(values.size()) / columns : 0; }
+    uint32_t width = kOneRow;     ///< of a row; 0: the ends of an open range
+    uint32_t columns() const { return width == kOneRow ? static_cast<uint32_t>(values.size()) : width; }
+    uint32_t rows() const {
+      return values.empty() || !columns() ? 0 : static_cast<uint32_t>(values.size()) / columns();
+    }
   };
   struct Labelled {
     uint32_t label;
     Hull hull;
     uvec2 key;
+    float area; ///< of its faces
   };
   /// Values of an operation or a function, on the machine's stack.
   struct Arguments {
@@ -103,8 +117,9 @@ private:
 #include "spawn/cga/machine.h"
 
   // --- deriver.cpp ---
+  void clear(); ///< what the axiom before left
   bool start(const Axiom& axiom, uint32_t number);
-  void attributes(const Axiom& axiom);
+  void attributes(const Axiom& axiom, const std::vector<uint32_t>& order);
   void derive();
   bool runRule(const Shape& shape);
   void fail(const std::string& what);
@@ -117,7 +132,7 @@ private:
   std::string ruleAndOperation() const; ///< that run, for messages
   void addLeaf(uint32_t name);
   void writeLeaves(Derivation& result, uint32_t number, size_t firstLeaf);
-  void writeTriangles(const Form& form, Derivation& result);
+  void writeTriangles(const Form& form, float softAngle, Derivation& result);
   LeafScope scopeOf(const Shape& shape) const;
 
   // --- for operations ---
@@ -138,6 +153,9 @@ private:
   bool addChild(Shape& shape, uint32_t body, uint32_t base);
   /// Behind what drew numbers at the current key: the next ones are drawn at another.
   void settleDraws();
+  /// What a chunk that is a value gives on a component of the shape that runs.
+  bool valueOn(uint32_t chunk, uint32_t base, uint32_t top, const Form& form, uint32_t index, uint32_t total,
+               CgaValue& value);
   bool path(Operation operation, const Arguments& a);
 
   // Operations, by GPGP_CGA_OPERATIONS.
@@ -158,6 +176,13 @@ private:
   bool shapeAndRemainder(const Form& inner, const Form& rest, const Arguments& a, uint32_t table, uint32_t base);
   bool setbackBy(const std::vector<float>& distances, const Arguments& a, uint32_t table, uint32_t base);
   bool setbackEach(bool isArray, const std::vector<float>& each, const Arguments& a, uint32_t table, uint32_t base);
+  /// For each part of a table, the components that it is the first to select.
+  std::vector<std::vector<uint32_t>> selectedBy(const Components* components, uint32_t count, const Arguments& a,
+                                                uint32_t table);
+  void setTrims(Shape& part, const std::vector<TrimPlane>& planes);
+  bool applyTrims();
+  bool material(std::string_view name, const CgaValue& v);
+  CgaValue firstOfMaterial(std::string_view name); ///< what an attribute of materials is that nobody set
   bool compMaterial(const Arguments& a, uint32_t table, uint32_t base);
   bool splitUv(const Arguments& a, uint32_t table, uint32_t base);
   bool selects(std::string_view selector, const Components* components, uint32_t index, uint32_t count,
@@ -165,9 +190,17 @@ private:
   uint32_t uvSet(const CgaValue& v);
   void tagStreets(const Axiom& axiom);
   uint32_t tagBits(std::string_view query) const; ///< of the names that a query matches
+  uint32_t tagBit(const std::string& name);       ///< its own bit; 0: there are too many names
   bool tagNames(const Arguments& a, uint32_t set, uint32_t clear);
   bool hasTags(const Arguments& a);
   Form* assetForm(const std::string& path, std::string& why); ///< none: why not, or there is no room
+
+  // --- functions_world.cpp ---
+  const WorldField* fieldNamed(std::string_view name) const;
+  float fieldAt(const WorldField& field, const vec3& place) const;
+  uint32_t edgeBehind(const std::vector<vec3>& points, const vec3& facing);
+  const std::string* edgeText(const CgaValue& name);
+  float ownArea() const;
 
   // --- operations_inline.cpp ---
   /// Derives a part of a block at once from the shape that runs; a value behind the block's is the first free one.
@@ -182,12 +215,22 @@ private:
   GPGP_CGA_FUNCTIONS(GPGP_CGA_DECLARE)
 #undef GPGP_CGA_DECLARE
   CgaValue array(ArrayValue value);
+  bool isLess(const CgaValue& x, const CgaValue& y) const;
+  CgaValue placesOf(const CgaValue& v, uint32_t size, std::vector<int64_t>& places);
+  std::vector<std::string> namesOfAsset(const Arguments& a);
+  std::vector<std::string> filesOf(const CgaValue& v);
+  std::vector<std::string> sortedFiles(const std::vector<std::string>& files, std::string_view axes, bool byRatio,
+                                       bool arePictures, float mostError);
+  CgaValue sorted(const Arguments& a, bool byRatio, bool arePictures, float mostError);
+  CgaValue oneOf(const Arguments& a, bool byRatio, bool arePictures, float best, float mostError);
   const ArrayValue& arrayOf(const CgaValue& v);
   CgaValue filled(uint32_t type, const Arguments& a);
   std::vector<std::string> list(const CgaValue& v);
   CgaValue listValue(const std::vector<std::string>& items);
-  std::vector<std::string> searchFiles(const std::string& pattern);
+  const std::vector<std::string>& searchFiles(const std::string& pattern);
+  std::vector<std::string> soughtFiles(const std::string& pattern);
   std::string findFile(const std::string& path);
+  std::string soughtFile(const std::string& path);
   CgaValue table(const Arguments& a, bool asStrings);
   CgaValue context(const Arguments& a, bool (*query)(const Hull&, const Hull&));
   const Hull& ownHull();
@@ -229,6 +272,7 @@ private:
   std::vector<CgaValue> blocks_; // attributes, a block after the other
   std::vector<Change> changes_;
   std::vector<Projection> projections_;
+  std::vector<Trim> trims_;
   std::vector<ArrayValue> arrays_;
   size_t arrayValues_ = 0; ///< of all arrays
   std::vector<Labelled> labels_;
@@ -238,6 +282,9 @@ private:
   std::string scratch_; // of text()
   std::unordered_map<std::string, std::unique_ptr<Asset>> assets_;
   std::unordered_map<std::string, Form> assetForms_; // in the pool
+  std::unordered_map<std::string, std::string> foundFiles_;
+  std::unordered_map<std::string, std::vector<std::string>> searches_;
+  CgaValue componentValue_ = cgaFloatValue(0); ///< that comp() as a value gave last
   Hull hull_;
   bool hasHull_ = false;
 

@@ -1,5 +1,6 @@
 // Functions that ask the current shape: its geometry, scope, places in splits and components, and what is around it.
 #include "spawn/cga/deriver.h"
+#include "spawn/cga/rotation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +37,7 @@ CgaValue Deriver::geometry_area_(const Arguments& a) {
       if (selects(word(a[0]), components ? &*components : nullptr, i, faces, a[0])) sum += faceArea(pool_, form, i);
     return floatValue(sum);
   }
-  return floatValue(boxes_.is(form) ? boxes_.area(form) : area(pool_, form));
+  return floatValue(ownArea());
 }
 
 CgaValue Deriver::geometry_volume_(const Arguments&) {
@@ -219,6 +220,9 @@ CgaValue Deriver::comp_sel_(const Arguments&) { return cgaMake(kCgaString, shape
 CgaValue Deriver::initialShape_name_(const Arguments&) { return stringValue(axiom_->name); }
 CgaValue Deriver::initialShape_startRule_(const Arguments&) { return stringValue(program_.rules[program_.start].name); }
 CgaValue Deriver::material_colormap_(const Arguments&) { return cgaMake(kCgaString, shape_.texture); }
+CgaValue Deriver::trim_horizontal_(const Arguments&) { return cgaBoolValue(shape_.trimsHorizontal); }
+CgaValue Deriver::trim_vertical_(const Arguments&) { return cgaBoolValue(shape_.trimsVertical); }
+CgaValue Deriver::material_color_rgb_(const Arguments& a) { return material_rgb_(a); }
 CgaValue Deriver::material_rgb_(const Arguments&) {
   char text[16];
   std::snprintf(text, sizeof text, "#%02x%02x%02x", static_cast<int>(shape_.color.x * 255.0f + 0.5f),
@@ -229,25 +233,38 @@ CgaValue Deriver::getTreeKey_(const Arguments&) {
   return stringValue(std::to_string(shape_.key.x) + "." + std::to_string(shape_.key.y));
 }
 
-/// Of a point of the scope: x, y or z in another system.
+/// A place, or an orientation by three angles, in another system: one of its numbers, or all in an array.
 CgaValue Deriver::convert_(const Arguments& a) {
-  const std::string_view which = word(a[0]), from = word(a[1]), to = word(a[2]);
-  const uint32_t first = a.count == 7 ? 4 : a.count - 3;
-  if (a.count == 7 && word(a[3]) == "orient") {
-    warn("convert", "convert of orientations is not supported, and gives 0");
-    return floatValue(0);
+  const bool isArray = a.count == 4;
+  const std::string_view which = isArray ? std::string_view() : word(a[0]);
+  const uint32_t systems = isArray ? 0 : 1;
+  const std::string_view from = word(a[systems]), to = word(a[systems + 1]);
+  vec3 p(0);
+  if (isArray) {
+    const std::vector<CgaValue> values = arrayOf(a[3]).values;
+    for (uint32_t i = 0; i < 3 && i < values.size(); ++i) p[static_cast<int>(i)] = number(values[i]);
+  } else {
+    const uint32_t first = a.count == 7 ? 4 : a.count - 3;
+    p = {number(a[first]), number(a[first + 1]), number(a[first + 2])};
   }
-  const vec3 p(number(a[first]), number(a[first + 1]), number(a[first + 2]));
-  const auto originOf = [&](std::string_view system) {
-    return system == "world"    ? vec3(0)
-           : system == "object" ? start_.scope.origin
-           : system == "pivot"  ? shape_.pivot
-                                : shape_.form.scope.origin;
-  };
   const Axes x = axes(from), y = axes(to);
-  const vec3 world = originOf(from) + x.x * p.x + x.y * p.y + x.z * p.z;
-  const vec3 local = world - originOf(to);
-  return floatValue(glm::dot(local, which == "y" ? y.y : which == "z" ? y.z : y.x));
+  const auto world = [&](const vec3& v) { return x.x * v.x + x.y * v.y + x.z * v.z; };
+  const auto local = [&](const vec3& v) { return vec3(glm::dot(v, y.x), glm::dot(v, y.y), glm::dot(v, y.z)); };
+  vec3 result;
+  if (word(a[isArray ? 2 : a.count == 7 ? 3 : 0]) == "orient") {
+    const Rotation r(p);
+    result = euler(local(world(r.x)), local(world(r.y)), local(world(r.z)));
+  } else {
+    const auto originOf = [&](std::string_view system) {
+      return system == "world"    ? vec3(0)
+             : system == "object" ? start_.scope.origin
+             : system == "pivot"  ? shape_.pivot
+                                  : shape_.form.scope.origin;
+    };
+    result = local(originOf(from) + world(p) - originOf(to));
+  }
+  if (!isArray) return floatValue(which == "y" ? result.y : which == "z" ? result.z : result.x);
+  return array({{floatValue(result.x), floatValue(result.y), floatValue(result.z)}, ArrayValue::kOneRow});
 }
 
 // ---------------------------------------------------------------- what is around
@@ -307,11 +324,6 @@ CgaValue Deriver::contextCount_(const Arguments& a) {
   uint32_t count = 0;
   for (const Labelled& other : labels_) count += other.label == a[a.count - 1].bits;
   return floatValue(static_cast<float>(count));
-}
-
-CgaValue Deriver::contextCompare_(const Arguments&) {
-  warn("contextCompare", "'contextCompare' is not supported, and is 0");
-  return floatValue(0);
 }
 
 } // namespace gpgp::spawn::cga

@@ -1,5 +1,6 @@
 // Functions of strings, lists in strings, colours and files.
 #include "spawn/cga/deriver.h"
+#include "spawn/cga/files.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,6 +59,7 @@ CgaValue Deriver::find_(const Arguments& a) {
   return floatValue(static_cast<float>(all[static_cast<size_t>(index)]));
 }
 CgaValue Deriver::findFirst_(const Arguments& a) {
+  if (a[0].type == kCgaArray) return findFirstIndex_(a);
   const std::string t = text(a[0]);
   const size_t at = t.find(text(a[1]));
   return floatValue(at == std::string::npos ? -1.0f : static_cast<float>(at));
@@ -225,19 +227,45 @@ CgaValue Deriver::listRetainAll_(const Arguments& a) {
   return listValue(items);
 }
 CgaValue Deriver::listClean_(const Arguments& a) { return listValue(list(a[0])); }
+CgaValue Deriver::listCount_(const Arguments& a) {
+  const std::vector<std::string> items = list(a[0]);
+  return floatValue(static_cast<float>(std::count(items.begin(), items.end(), text(a[1]))));
+}
+/// With a semicolon at its end.
+CgaValue Deriver::listTerminate_(const Arguments& a) {
+  const std::string all = text(a[0]);
+  return stringValue(all.empty() || all.ends_with(';') ? all : all + ";");
+}
+CgaValue Deriver::listToArray_(const Arguments& a) {
+  ArrayValue result;
+  for (const std::string& item : list(a[0])) result.values.push_back(stringValue(item));
+  return array(std::move(result));
+}
+CgaValue Deriver::listFromArray_(const Arguments& a) {
+  if (a[0].type != kCgaArray) return listValue({text(a[0])});
+  return listValue(filesOf(a[0]));
+}
+/// A word out of a string, for comp and its like.
+CgaValue Deriver::sel_(const Arguments& a) { return cgaMake(kCgaWord, strings_.number(text(a[0]))); }
 
 // ---------------------------------------------------------------- files
 
 /// Beside the program, or in a folder of a workspace around it.
 std::string Deriver::findFile(const std::string& path) {
   if (path.empty()) return {};
-  const std::string relative = path[0] == '/' ? path.substr(1) : path;
+  const auto [known, isNew] = foundFiles_.try_emplace(path);
+  if (isNew) known->second = soughtFile(path);
+  return known->second;
+}
+
+std::string Deriver::soughtFile(const std::string& path) {
+  std::string relative = path[0] == '/' ? path.substr(1) : path;
+  std::replace(relative.begin(), relative.end(), '\\', '/');
   fs::path folder(program_.folder.empty() ? std::string("./") : program_.folder);
-  std::error_code ignored;
   for (int up = 0; up < 8; ++up) {
     for (const char* inside : {"", "assets", "images", "models", "maps", "data"}) {
-      const fs::path candidate = folder / inside / relative;
-      if (fs::is_regular_file(candidate, ignored)) return candidate.lexically_normal().string();
+      const std::string found = existingFile((folder / inside / relative).string());
+      if (!found.empty()) return fs::path(found).lexically_normal().string();
     }
     folder /= "..";
   }
@@ -245,7 +273,7 @@ std::string Deriver::findFile(const std::string& path) {
 }
 
 namespace {
-/// * anything but /, ? one character.
+/// * anything, ? one character.
 bool matchesGlob(std::string_view text, std::string_view pattern) {
   size_t t = 0, p = 0, star = std::string_view::npos, mark = 0;
   while (t < text.size()) {
@@ -267,19 +295,48 @@ bool matchesGlob(std::string_view text, std::string_view pattern) {
 }
 } // namespace
 
-std::vector<std::string> Deriver::searchFiles(const std::string& pattern) {
+const std::vector<std::string>& Deriver::searchFiles(const std::string& pattern) {
+  const auto [known, isNew] = searches_.try_emplace(pattern);
+  if (isNew) known->second = soughtFiles(pattern);
+  return known->second;
+}
+
+std::vector<std::string> Deriver::soughtFiles(const std::string& pattern) {
   std::vector<std::string> result;
   if (pattern.starts_with('$')) {
     warn("fileSearch $", "searches for files by regular expressions are not supported, and find none");
     return result;
   }
-  std::string relative = pattern.starts_with('/') ? pattern.substr(1) : pattern;
-  while (relative.starts_with('*')) relative.erase(0, 1); // "*assets/x*": anywhere below
+  const std::string relative = pattern.starts_with('/') ? pattern.substr(1) : pattern;
   const size_t slash = relative.rfind('/');
   const std::string inside = slash == std::string::npos ? std::string() : relative.substr(0, slash);
   const std::string name = slash == std::string::npos ? relative : relative.substr(slash + 1);
-  fs::path folder(program_.folder.empty() ? std::string("./") : program_.folder);
+  const fs::path begin(program_.folder.empty() ? std::string("./") : program_.folder);
   std::error_code error;
+  if (relative.starts_with('*') || inside.find('*') != std::string::npos) {
+    // Anywhere below the folder of the program, else below one of the folders above it.
+    constexpr uint32_t kMostVisited = 100'000;
+    uint32_t visited = 0;
+    fs::path folder = begin;
+    for (int up = 0; up < 4 && result.empty() && visited < kMostVisited; ++up) {
+      fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error), end;
+      for (; !error && entry != end && visited < kMostVisited; entry.increment(error), ++visited) {
+        const std::string file = entry->path().filename().string();
+        if (file.starts_with('.')) {
+          entry.disable_recursion_pending();
+          continue;
+        }
+        const std::string path = entry->path().lexically_relative(folder).generic_string();
+        if (result.size() < 10000 && matchesGlob(path, relative) && entry->is_regular_file(error))
+          result.push_back(path);
+      }
+      folder /= "..";
+    }
+    if (visited >= kMostVisited)
+      warn("fileSearch " + pattern,
+           "the search for \"" + pattern + "\" ended after " + std::to_string(kMostVisited) + " files");
+  }
+  fs::path folder = begin;
   for (int up = 0; up < 8 && result.empty(); ++up) {
     for (const char* root : {"", "assets", "images", "models", "maps", "data"}) {
       const fs::path place = folder / root / inside;
@@ -354,7 +411,7 @@ CgaValue Deriver::table(const Arguments& a, bool asStrings) {
     columns = std::max(columns, cells.size());
     rows.push_back(std::move(cells));
   }
-  result.columns = static_cast<uint32_t>(columns);
+  result.width = static_cast<uint32_t>(columns);
   for (std::vector<std::string>& row : rows) {
     row.resize(columns);
     for (const std::string& cell : row)

@@ -82,6 +82,22 @@ FormulaPtr drawn(uint32_t index) {
   return formula;
 }
 
+FormulaPtr fieldOf(const std::string& name, const FormulaPtr& x, const FormulaPtr& z) {
+  auto formula = leaf(Formula::Kind::field, -kLargest, kLargest);
+  formula->name = name;
+  formula->isOfPlace = true;
+  formula->a = x;
+  formula->b = z;
+  formula->stack = 2;
+  formula->length = 3;
+  if (!x) return formula;
+  formula->sizes = x->sizes | z->sizes;
+  formula->draws = x->draws || z->draws;
+  formula->stack = std::max(x->stack, z->stack + 1);
+  formula->length = x->length + z->length + 1;
+  return formula->stack > kMaxStack || formula->length > kMostCodes ? nullptr : formula;
+}
+
 FormulaPtr combined(uint32_t code, const FormulaPtr& a, const FormulaPtr& b) {
   if (!a || !b) return nullptr;
   const bool isSymmetric = code == kCodeAdd || code == kCodeMultiply || code == kCodeLeast || code == kCodeMost ||
@@ -108,6 +124,7 @@ FormulaPtr combined(uint32_t code, const FormulaPtr& a, const FormulaPtr& b) {
   f->b = b;
   f->sizes = a->sizes | b->sizes;
   f->draws = a->draws || b->draws;
+  f->isOfPlace = a->isOfPlace || b->isOfPlace;
   f->isBoolean = isBoolean(code);
   f->stack = std::max(a->stack, b->stack + 1);
   f->length = a->length + b->length + 1;
@@ -156,6 +173,7 @@ FormulaPtr selected(const FormulaPtr& condition, const FormulaPtr& yes, const Fo
 FormulaPtr clamped(const FormulaPtr& a) { return !a || a->low >= 0 ? a : combined(kCodeMost, a, number(0)); }
 
 FormulaPtr renamed(const FormulaPtr& a, const std::array<uint32_t, 3>& axes) {
+  if (a && a->isOfPlace) return nullptr; // a component is at another place
   if (!a || !a->sizes) return a;
   if (a->kind == Formula::Kind::size) return axes[a->index] < 3 ? sizeOf(axes[a->index]) : nullptr;
   const FormulaPtr left = renamed(a->a, axes), right = renamed(a->b, axes);
@@ -179,6 +197,8 @@ std::string text(const FormulaPtr& a) {
   case Formula::Kind::size: return std::string("ShapeSize(") + "XYZ"[a->index] + ")";
   case Formula::Kind::axiom: return "Noise(ShapeCustomAttribute()," + std::to_string(a->index) + ")";
   case Formula::Kind::draw: return "Rand(0,1)";
+  case Formula::Kind::field:
+    return "Field(" + a->name + (a->a ? "," + text(a->a) + "," + text(a->b) : std::string()) + ")";
   case Formula::Kind::binary: break;
   }
   const Binary& binary = binaryOf(a->index);
@@ -190,7 +210,7 @@ namespace {
 bool inOrder(const FormulaPtr& a, uint32_t& next) {
   if (!a->draws) return true;
   if (a->kind == Formula::Kind::draw) return a->index == next++;
-  return inOrder(a->a, next) && inOrder(a->b, next);
+  return inOrder(a->a, next) && inOrder(a->b, next); // a field that draws has both
 }
 } // namespace
 

@@ -16,11 +16,13 @@ using FormulaPtr = std::shared_ptr<const Formula>;
 
 /// A number. What it reads of a shape is that of the shape where it is used: who keeps one sees to that.
 struct Formula {
-  enum class Kind : uint8_t { number, size, axiom, draw, binary };
+  enum class Kind : uint8_t { number, size, axiom, draw, field, binary };
   Kind kind = Kind::number;
   float value = 0;         ///< number
   uint32_t index = 0;      ///< size: the axis; draw: which one of its operation; binary: kCode
-  FormulaPtr a, b;         ///< binary
+  FormulaPtr a, b;         ///< binary; field: x and z from the shape's centre, or none
+  std::string name;        ///< field
+  bool isOfPlace = false;  ///< a field is read where the shape is
   uint32_t sizes = 0;      ///< bits: axes of which a size is read
   bool draws = false;      ///< numbers
   bool isBoolean = false;  ///< 0 or 1
@@ -36,6 +38,8 @@ FormulaPtr sizeOf(uint32_t axis);
 /// Number index of those that every axiom has, from its seed, in [0, 1).
 FormulaPtr axiomNumber(uint32_t index);
 FormulaPtr drawn(uint32_t index);
+/// A field of the world at the shape's centre, or x and z from there. None: it would be too long.
+FormulaPtr fieldOf(const std::string& name, const FormulaPtr& x, const FormulaPtr& z);
 /// In the machine's arithmetic, known values worked out. None: it would be too long for a graph.
 FormulaPtr combined(uint32_t code, const FormulaPtr& a, const FormulaPtr& b);
 /// condition ? yes : no, of which none draws.

@@ -1,5 +1,6 @@
 #include "spawn/cga/lexer.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -9,9 +10,10 @@ namespace gpgp::spawn::cga {
 namespace {
 
 // Longer ones before their beginnings.
-constexpr std::array<std::string_view, 38> kSymbols = {
-    "-->", ".==", ".!=", ".<=", ".>=", "==", "!=", "<=", ">=", "&&", "||", ":=", ".<", ".>", "(", ")", "[", "]", "{",
-    "}",   "|",   ":",   ",",   "=",   "+",  "-",  "*",  "/",  "%",  "<",  ">",  "!",  "'",  "~", "@", ".", ";", "^"};
+constexpr std::array<std::string_view, 46> kSymbols = {
+    "-->", ".==", ".!=", ".<=", ".>=", ".&&", ".||", "==", "!=", "<=", ">=", "&&", "||", ":=", ".<", ".>",
+    ".+",  ".-",  ".*",  "./",  ".%",  ".!",  "(",   ")",  "[",  "]",  "{",  "}",  "|",  ":",  ",",  "=",
+    "+",   "-",   "*",   "/",   "%",   "<",   ">",   "!",  "'",  "~",  "@",  ".",  ";",  "^"};
 
 bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '$'; }
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
@@ -106,7 +108,9 @@ private:
     const Place place = here();
     take(1);
     std::string value;
-    while (at_ < text_.size() && peek() != '"' && peek() != '\n') {
+    // A string may go on in the next lines; one that has no end for some lines lacks its quotation mark.
+    const size_t close = closeOf(at_);
+    while (at_ < close) {
       if (peek() == '\\' && at_ + 1 < text_.size()) {
         take(1);
         const char c = peek();
@@ -114,9 +118,8 @@ private:
           value += c == 'n' ? '\n' : '\t';
         } else {
           if (c != '"' && c != '\\') value += '\\'; // as in regular expressions
-          if (c != '\n') value += c;
+          value += c;
         }
-        if (c == '\n') break;
       } else {
         value += peek();
       }
@@ -129,9 +132,23 @@ private:
     tokens_.push_back({TokenKind::string, place, std::move(value), 0});
   }
 
+  /// Where the string that is read ends: at its quotation mark, or where there is none, at the end of the line.
+  size_t closeOf(size_t begin) const {
+    constexpr int kMostLines = 40;
+    int lines = 0;
+    for (size_t i = begin; i < text_.size() && lines < kMostLines; ++i) {
+      if (text_[i] == '"') return i;
+      if (text_[i] == '\\') ++i;
+      if (i < text_.size() && text_[i] == '\n') ++lines;
+    }
+    return std::min(text_.find('\n', begin), text_.size());
+  }
+
   void symbol() {
     for (const std::string_view symbol : kSymbols)
       if (text_.substr(at_).starts_with(symbol)) {
+        // Name.// begins a comment.
+        if (symbol == "./" && (peek(2) == '/' || peek(2) == '*')) continue;
         tokens_.push_back({TokenKind::symbol, here(), std::string(symbol), 0});
         take(symbol.size());
         return;

@@ -138,6 +138,7 @@ private:
   Value named(const Expression& e, const Scope& scope, const State& state);
   Value call(Entity& entity, const Expression& e, const Scope& scope, const State& state);
   Value math(const Expression& e, const Scope& scope, const State& state);
+  Value field(const Expression& e, const Scope& scope, const State& state);
   Value choices(const Expression& e, const Scope& scope, const State& state);
   Value binaryOf(const std::string& op, const Value& a, const Value& b, Place place);
   Value select(const FormulaPtr& condition, const Value& yes, const Value& no, Place place);

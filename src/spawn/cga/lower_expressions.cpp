@@ -55,6 +55,11 @@ Lowering::Bound Lowering::kept(const Value& value) const {
            std::any_of(v.values.begin(), v.values.end(), [&](const Value& inner) { return self(self, inner); });
   };
   if (draws(draws, value)) bound.stale = "a random number that a shape has to remember";
+  const auto isOfPlace = [](const auto& self, const Value& v) -> bool {
+    return (v.formula && v.formula->isOfPlace) ||
+           std::any_of(v.values.begin(), v.values.end(), [&](const Value& inner) { return self(self, inner); });
+  };
+  if (isOfPlace(isOfPlace, value)) bound.stale = "a field's value that a shape has to remember";
   return bound;
 }
 
@@ -106,6 +111,7 @@ Value Lowering::value(const Expression& e, const Scope& scope, const State& stat
   }
   case Kind::unary: {
     const FormulaPtr inner = numberOf(value(*e.arguments[0], scope, state), e.place);
+    if (e.text[0] == '.') misfit("an array", e.place);
     if (e.text != "!") return valueOf(fits(combined(shader::kCodeSubtract, number(0), inner), e.place));
     return valueOf(fits(notOf(asBoolean(inner)), e.place));
   }
@@ -125,6 +131,8 @@ Value Lowering::value(const Expression& e, const Scope& scope, const State& stat
   }
   case Kind::cases:
   case Kind::stochastic: return choices(e, scope, state);
+  case Kind::components:
+  case Kind::rows:
   case Kind::index:
   case Kind::range:
   case Kind::array: misfit("an array", e.place);
@@ -334,11 +342,30 @@ Value Lowering::named(const Expression& e, const Scope& scope, const State& stat
     if (state.form != Form::box) return valueOf(number(0));
     return valueOf(fits(combined(shader::kCodeMultiply, product(0, 1), sizeOf(2)), e.place));
   }
+  if (e.text == "Field" && e.isCall) return field(e, scope, state);
   if (const auto function = findFunction(e.text)) {
     if (function->isMath) return math(e, scope, state);
     misfit("the function or attribute '" + e.text + "'", e.place);
   }
   misfit("'" + e.text + "'", e.place);
+}
+
+/// At the middle of what fills its scope, as a graph's shapes do.
+Value Lowering::field(const Expression& e, const Scope& scope, const State& state) {
+  const Value name = value(*e.arguments.at(0), scope, state);
+  const auto isLetter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  const bool isName = name.kind == Value::Kind::string && !name.string.empty() && isLetter(name.string[0]) &&
+                      std::all_of(name.string.begin(), name.string.end(),
+                                  [&](char c) { return isLetter(c) || (c >= '0' && c <= '9'); });
+  if (!isName) misfit("a field whose name is not known, or is no identifier,", e.place);
+  if (state.form != Form::flat && state.form != Form::upright && state.form != Form::box)
+    misfit("a field that is read on anything but a rectangle or a box", e.place);
+  FormulaPtr x, z;
+  if (e.arguments.size() > 2) {
+    x = numberOf(value(*e.arguments[1], scope, state), e.place);
+    z = numberOf(value(*e.arguments[2], scope, state), e.place);
+  }
+  return valueOf(fits(fieldOf(name.string, x, z), e.place));
 }
 
 Value Lowering::math(const Expression& e, const Scope& scope, const State& state) {
@@ -356,6 +383,7 @@ Value Lowering::math(const Expression& e, const Scope& scope, const State& state
   }
   if (std::all_of(a.begin(), a.end(), [](const FormulaPtr& f) { return f->isNumber(); })) {
     const float x = a.empty() ? 0.0f : a[0]->value, y = a.size() > 1 ? a[1]->value : 0.0f;
+    if (cgaHasNoValue(function, x)) misfit("'" + e.text + "' of a negative number", e.place);
     const bool isBoolean = function == kCgaIsinfMath || function == kCgaIsnanMath;
     return valueOf(number(cgaMath(function, x, y), isBoolean));
   }

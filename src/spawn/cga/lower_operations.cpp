@@ -68,7 +68,8 @@ Lowering::Text Lowering::operation(const Statement& s, Operation operation, cons
   case Operation::t_: {
     const auto v = vector(0);
     for (uint32_t i = 0; i < 3; ++i)
-      state.moved[i] = state.moved[i] && !v[i]->draws ? combined(kCodeAdd, state.moved[i], v[i]) : nullptr;
+      state.moved[i] =
+          state.moved[i] && !v[i]->draws && !v[i]->isOfPlace ? combined(kCodeAdd, state.moved[i], v[i]) : nullptr;
     const bool isStill =
         std::all_of(v.begin(), v.end(), [](const FormulaPtr& f) { return f->isNumber() && f->value == 0; });
     Text rest = goOn(std::move(state));
@@ -197,6 +198,7 @@ Lowering::Text Lowering::operation(const Statement& s, Operation operation, cons
   case Operation::primitiveCylinder_:
   case Operation::primitiveCone_:
   case Operation::primitiveSphere_: {
+    if (state.form == Form::trapezoid) misfit("'" + s.name + "' in a roof face that is not a rectangle", s.place);
     std::string what = s.name;
     if (operation == Operation::i_) {
       if (a.size() > 1) misfit("i with more than the file", s.place);
@@ -312,7 +314,8 @@ Lowering::Text Lowering::split(const Statement& s, const Scope& scope, const Sta
       const bool isSize =
           size.kind == Value::Kind::number || size.kind == Value::Kind::relative || size.kind == Value::Kind::floating;
       if (!isSize) misfit("a size that is a choice", part.place);
-      if (isGroup && (size.kind == Value::Kind::relative || (size.formula->sizes >> axis & 1u)))
+      if (isGroup &&
+          (size.kind == Value::Kind::relative || size.formula->isOfPlace || (size.formula->sizes >> axis & 1u)))
         misfit("a size in a repeated group that depends on the whole shape", part.place);
       if (size.formula->draws && (isGroup || place != result.size()))
         misfit("a random size in a repeated group", part.place);

@@ -68,7 +68,7 @@ Lowering::Text Lowering::roof(const Statement& s, Operation operation, const Sco
   const auto overhang = [&](size_t i) {
     if (!given(i)) return number(0);
     const FormulaPtr f = argumentNumber(*a[first + i], scope, state);
-    if (f->draws || f->sizes || f->low < 0)
+    if (f->draws || f->sizes || f->isOfPlace || f->low < 0)
       misfit("an overhang that is random, depends on the shape or may be negative", a[first + i]->place);
     return f;
   };

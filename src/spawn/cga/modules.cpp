@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <tuple>
 
 namespace gpgp::spawn::cga {
@@ -18,7 +19,9 @@ constexpr size_t kMostModules = 4096;
 std::vector<std::string> places(const std::string& path, const std::string& importer) {
   namespace fs = std::filesystem;
   std::vector<std::string> result;
-  const fs::path relative = !path.empty() && path[0] == '/' ? fs::path(path.substr(1)) : fs::path(path);
+  std::string slashes = path; // some files have them of Windows
+  std::replace(slashes.begin(), slashes.end(), '\\', '/');
+  const fs::path relative = slashes.starts_with('/') ? fs::path(slashes.substr(1)) : fs::path(slashes);
   fs::path withoutFirst;
   for (auto part = relative.begin(); part != relative.end(); ++part)
     if (part != relative.begin()) withoutFirst /= *part;
@@ -37,6 +40,13 @@ std::vector<std::string> places(const std::string& path, const std::string& impo
 } // namespace
 
 void Messages::push(const std::string& file, Place place, GpgpSeverity severity, std::string text) {
+  // A file that is imported several times has its errors once.
+  const auto isSame = [&](const Message& m) {
+    const Diagnostic& d = m.diagnostic;
+    return d.severity == severity && d.place.line == place.line && d.place.column == place.column && d.text == text &&
+           m.file == file;
+  };
+  if (severity == GPGP_SEVERITY_ERROR && std::any_of(all_.begin(), all_.end(), isSame)) return;
   if (severity == GPGP_SEVERITY_ERROR) ++errors_;
   if (all_.size() < kLimit) all_.push_back({file, {place, severity, std::move(text)}});
 }
@@ -87,7 +97,10 @@ Entity* Module::find(const std::string& name, bool isRule, size_t parameters) {
   const auto [begin, end] = entities.equal_range(name);
   for (auto it = begin; it != end; ++it) {
     const Definition& d = *it->second.definition;
-    if ((it->second.kind == Definition::Kind::rule) == isRule && d.parameters.size() == parameters) return &it->second;
+    if ((it->second.kind == Definition::Kind::rule) != isRule || d.parameters.size() != parameters) continue;
+    Entity* entity = &it->second;
+    while (entity->same) entity = entity->same;
+    return entity;
   }
   return nullptr;
 }
@@ -118,9 +131,13 @@ Module* Modules::instantiate(const File* file, std::string prefix, Module* impor
   module->file = file;
   module->prefix = std::move(prefix);
   module->importer = importer;
+  if (import) {
+    module->hidesAll = import->hidesAll || importer->hidesAll;
+    module->hides = {import->hides.begin(), import->hides.end()};
+  }
   if (!file) return module;
   define(*module, style);
-  if (import) apply(*module, *import);
+  if (import) apply(*module, *import), propagate(*module, *import);
   for (const Import& i : file->imports) {
     if (i.prefix.empty()) {
       messages_.error(file->path, i.place, "an import needs a prefix: import name: \"" + i.path + '"');
@@ -161,6 +178,7 @@ void Modules::define(Module& module, const std::string& style) {
   for (std::string at = style; !at.empty() && active.size() <= file.styles.size();) {
     const auto found =
         std::find_if(file.styles.begin(), file.styles.end(), [&](const Style& s) { return s.name == at; });
+    if (found == file.styles.end() && at == "Default") break; // what belongs to no style
     if (found == file.styles.end()) {
       core::Suggestion suggestion(at);
       for (const Style& s : file.styles) suggestion.offer(s.name);
@@ -184,7 +202,7 @@ void Modules::define(Module& module, const std::string& style) {
           other->definition = &d;
         continue;
       }
-      module.entities.emplace(d.name, Entity{&d, &module, &module, d.kind, 0, 0});
+      module.entities.emplace(d.name, Entity{&d, &module, &module, d.kind});
     }
   // What @StartRule marks, else the first rule.
   for (const bool marked : {true, false})
@@ -207,6 +225,43 @@ void Modules::apply(Module& module, const Import& import) {
     }
     entity->definition = &d;
     entity->scope = module.importer;
+  }
+}
+
+namespace {
+/// Whether an attribute is given the value of a name: attr height = Import.height.
+bool takes(const Entity& attribute, const std::string& name) {
+  const std::function<bool(const Expression&)> holds = [&](const Expression& e) {
+    if (e.kind == Expression::Kind::name && !e.isCall && e.text == name) return true;
+    return std::any_of(e.arguments.begin(), e.arguments.end(),
+                       [&](const ExpressionPtr& a) { return a && holds(*a); }) ||
+           std::any_of(e.choices.begin(), e.choices.end(), [&](const Choice& c) {
+             return (c.condition && holds(*c.condition)) || (c.value && holds(*c.value));
+           });
+  };
+  return attribute.definition->value && holds(*attribute.definition->value);
+}
+} // namespace
+
+/// An attribute that the importing file has as well is that one, unless the import protects it or gives it a value, or
+/// the importing file takes its value from there.
+void Modules::propagate(Module& module, const Import& import) {
+  const auto has = [](const auto& list, const auto& isIt) { return std::any_of(list.begin(), list.end(), isIt); };
+  for (const std::string& name : import.isProtected)
+    if (!module.find(name, false, 0)) {
+      core::Suggestion suggestion(name);
+      for (const auto& [other, entity] : module.entities) suggestion.offer(other);
+      messages_.warning(module.importer->file->path, import.place,
+                        "\"" + import.path + "\" has no attribute '" + name + "' to be protected" + suggestion.text());
+    }
+  if (import.protectsAll) return;
+  for (auto& [name, entity] : module.entities) {
+    const std::string& own = name;
+    if (entity.kind != Definition::Kind::attribute || entity.scope != &module) continue;
+    if (has(import.isProtected, [&](const std::string& p) { return p == own; })) continue;
+    Entity* outer = module.importer->find(name, false, 0);
+    if (outer && outer->kind == Definition::Kind::attribute && !takes(*outer, import.prefix + '.' + name))
+      entity.same = outer;
   }
 }
 

@@ -46,6 +46,7 @@ struct Entity {
   Module* owner = nullptr; ///< whose name it is
   Module* scope = nullptr; ///< where the names in it are looked up: of what an import passes, the importer
   Definition::Kind kind = Definition::Kind::rule; ///< of what an import passes, the kind of what it replaces
+  Entity* same = nullptr;                         ///< the importer's attribute of this name, which it is
   uint32_t slot = 0;                              ///< of attributes and constants
   uint32_t label = 0;                             ///< of rules and functions, for calls
 };
@@ -57,6 +58,8 @@ struct Module {
   std::map<std::string, Module*> imports;
   std::multimap<std::string, Entity> entities; ///< by name; rules and functions by the number of parameters as well
   Entity* start = nullptr;
+  bool hidesAll = false;       ///< by @Hidden before the import: its attributes, and those that it imports
+  std::set<std::string> hides; ///< attributes that are hidden
 
   /// parameters: of rules and functions; attributes and constants have none.
   Entity* find(const std::string& name, bool isRule, size_t parameters);
@@ -78,6 +81,7 @@ private:
                       const std::string& style, uint32_t depth);
   void define(Module& module, const std::string& style);
   void apply(Module& module, const Import& import);
+  void propagate(Module& module, const Import& import);
 
   const ReadFile& read_;
   Messages& messages_;

@@ -39,6 +39,8 @@ constexpr std::string_view kSelectors[] = {"x",
                                            "xz",
                                            "yz",
                                            "xyz",
+                                           "yzx",
+                                           "zxy",
                                            "u",
                                            "v",
                                            "uv",
@@ -188,50 +190,43 @@ constexpr std::string_view kSelectors[] = {"x",
                                            "sz",
                                            "tx",
                                            "ty",
-                                           "tz"};
+                                           "tz",
+                                           "hard",
+                                           "soft",
+                                           "conform",
+                                           "used",
+                                           "changed",
+                                           "geometry",
+                                           "alignScope",
+                                           "noAlign",
+                                           "lon",
+                                           "lat",
+                                           "world.northernmost",
+                                           "world.southernmost",
+                                           "world.easternmost",
+                                           "world.westernmost",
+                                           "world.highest",
+                                           "area.largest",
+                                           "area.smallest"};
 
 // Operations of CGA that are not there yet; their blocks are passed over.
-constexpr std::string_view kUnsupportedOperations[] = {"splitAndSetbackPerimeter",
-                                                       "trim",
-                                                       "modify",
-                                                       "insert",
-                                                       "setNormals",
-                                                       "softenNormals",
-                                                       "setTagsFromEdgeAttrs",
-                                                       "setMaterial",
-                                                       "deleteMaterial",
-                                                       "resetMaterial",
-                                                       "roofMansard",
-                                                       "polygon",
-                                                       "footprint",
-                                                       "rectangle",
-                                                       "shapeH",
-                                                       "setElevation",
-                                                       "snap",
-                                                       "pointCloud",
-                                                       "readImage",
-                                                       "tube",
-                                                       "sweep"};
-constexpr std::string_view kUnsupportedFunctions[] = {"assetBestSize",     "assetBestRatio",
-                                                      "assetFitSize",      "assetsSortSize",
-                                                      "assetsSortRatio",   "assetApproxSize",
-                                                      "assetApproxRatio",  "assetNamingInfo",
-                                                      "assetNamingInfos",  "imageInfo",
-                                                      "imageBestRatio",    "imageApproxRatio",
-                                                      "imagesSortRatio",   "getGeoCoord",
-                                                      "geoCoordinate",     "sel",
-                                                      "edgeAttr.getFloat", "edgeAttr.getString",
-                                                      "edgeAttr.getBool",  "edgeAttr.getFloatArray",
-                                                      "edgeAttr.set",      "comp",
-                                                      "readMaterial",      "readBoolTable",
-                                                      "setElems",          "shapeAttr",
-                                                      "getObjectAttr",     "geometry.isTexturedBy",
-                                                      "getUniqueId",       "geometry.setback"};
+constexpr std::string_view kUnsupportedOperations[] = {"insert",     "deleteMaterial", "roofMansard",  "polygon",
+                                                       "rectangle",  "shapeH",         "setElevation", "snap",
+                                                       "pointCloud", "readImage",      "tube",         "sweep"};
+constexpr std::string_view kUnsupportedFunctions[] = {"geoCoordinate",   "readBoolTable", "shapeAttr",
+                                                      "getObjectAttr",   "getUniqueId",   "geometry.isTexturedBy",
+                                                      "geometry.setback"};
+// What the compiler writes for other notations: no name of the language leads there.
+constexpr std::string_view kHidden[] = {"componentValues", "arrayRows", "sequence",       "eachAnd",
+                                        "eachOr",          "eachNot",   "componentResult"};
+template <size_t N> bool contains(const std::string_view (&list)[N], std::string_view name) {
+  return std::find(std::begin(list), std::end(list), name) != std::end(list);
+}
 
 std::string withPoints(std::string_view name) {
   std::string text(name);
   for (const std::string_view part : {"scope_", "geometry_", "pivot_", "split_", "comp_", "initialShape_origin_",
-                                      "initialShape_", "material_color_", "material_"})
+                                      "initialShape_", "material_color_", "material_", "trim_", "edgeAttr_"})
     if (text.starts_with(part)) {
       std::replace(text.begin(), text.end(), '_', '.');
       break;
@@ -247,6 +242,7 @@ struct Index {
   Index() {
     texts.reserve(std::size(kFunctions) + std::size(kSettable));
     for (uint32_t i = 0; i < std::size(kOperations); ++i) {
+      if (contains(kHidden, kOperations[i].name)) continue;
       operations[kOperations[i].name] = i;
       operationNames.push_back(kOperations[i].name);
     }
@@ -257,6 +253,7 @@ struct Index {
     for (uint32_t i = 0; i < std::size(kFunctions); ++i) {
       texts.push_back(withPoints(kFunctions[i].name));
       if (texts.back() == "printed") texts.back() = "print"; // an operation has the name too
+      if (contains(kHidden, texts.back())) continue;
       functions[texts.back()] = i;
       functionNames.push_back(texts.back());
     }
@@ -269,9 +266,6 @@ struct Index {
 const Index& index() {
   static const Index all; // constant
   return all;
-}
-template <size_t N> bool contains(const std::string_view (&list)[N], std::string_view name) {
-  return std::find(std::begin(list), std::end(list), name) != std::end(list);
 }
 
 } // namespace
@@ -290,7 +284,21 @@ uint32_t wordArguments(std::string_view name, size_t count) {
     uint32_t bits;
     size_t least; // values
   };
-  constexpr Row kRows[] = {{"comp", 1, 1},
+  constexpr Row kRows[] = {{"comp", 3, 1},
+                           {"modify", 3, 1},
+                           {"setNormals", 1, 1},
+                           {"roofRidge", 1, 1},
+                           {"resetMaterial", 1, 1},
+                           {"getMaterial", 3, 2},
+                           {"assetsSortSize", 2, 2},
+                           {"assetsSortRatio", 2, 2},
+                           {"assetBestSize", 2, 2},
+                           {"assetBestRatio", 2, 2},
+                           {"assetApproxSize", 2, 2},
+                           {"assetApproxRatio", 2, 2},
+                           {"assetFitSize", 2, 2},
+                           {"imageInfo", 2, 2},
+                           {"imagesSortRatio", 2, 2},
                            {"split", 3, 1},
                            {"splitArea", 3, 1},
                            {"inline", 1, 1},
@@ -305,6 +313,10 @@ uint32_t wordArguments(std::string_view name, size_t count) {
                            {"geometry.hasTags", 2, 2},
                            {"geometry.tags", 2, 2},
                            {"assetInfo", 2, 2},
+                           {"assetNamingInfo", 2, 2},
+                           {"assetNamingInfos", 2, 2},
+                           {"getGeoCoord", 1, 1},
+                           {"contextCompare", 5, 3},
                            {"scatter", 0xd, 1},
                            {"center", 1, 1},
                            {"innerRectangle", 1, 1},
@@ -321,7 +333,8 @@ uint32_t wordArguments(std::string_view name, size_t count) {
                            {"cleanupGeometry", 1, 1},
                            {"setupProjection", 2, 1},
                            {"normalizeUV", 6, 1},
-                           {"convert", 0xf, 1},
+                           {"convert", 0xf, 5},
+                           {"convert", 7, 4},
                            {"roofGable", 1, 1},
                            {"roofHip", 1, 1},
                            {"roofShed", 1, 1},
@@ -337,7 +350,7 @@ uint32_t wordArguments(std::string_view name, size_t count) {
                            {"minimumDistance", 1, 1},
                            {"contextCount", 1, 1}};
   for (const Row& row : kRows)
-    if (row.name == name) return count >= row.least ? row.bits : 0;
+    if (row.name == name && count >= row.least) return row.bits;
   return 0;
 }
 

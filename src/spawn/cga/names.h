@@ -8,15 +8,16 @@
 namespace gpgp::spawn::cga {
 
 // Operations on shapes: name, fewest and most values, what block follows them. A row is all that the compiler needs;
-// the function of its name in operations*.cpp does the work.
+// the function of its name in operations*.cpp does the work. componentValues is comp(f) { ... } as a value.
 #define GPGP_CGA_OPERATIONS(X)                                                                                         \
   X(extrude, 1, 3, none)                                                                                               \
-  X(comp, 1, 1, parts)                                                                                                 \
+  X(comp, 1, 2, parts)                                                                                                 \
   X(split, 1, 3, parts)                                                                                                \
   X(splitArea, 1, 2, parts)                                                                                            \
   X(setback, 1, 2, parts)                                                                                              \
   X(setbackPerEdge, 1, 2, parts)                                                                                       \
   X(setbackToArea, 1, 2, parts)                                                                                        \
+  X(splitAndSetbackPerimeter, 1, 3, parts)                                                                             \
   X(shapeL, 2, 2, parts)                                                                                               \
   X(shapeU, 3, 3, parts)                                                                                               \
   X(shapeO, 4, 4, parts)                                                                                               \
@@ -26,6 +27,8 @@ namespace gpgp::spawn::cga {
   X(union, 0, 1, body)                                                                                                 \
   X(subtract, 0, 1, body)                                                                                              \
   X(intersect, 0, 1, body)                                                                                             \
+  X(modify, 1, 2, parts)                                                                                               \
+  X(componentValues, 1, 2, parts)                                                                                      \
   X(offset, 1, 2, none)                                                                                                \
   X(innerRect, 0, 0, none)                                                                                             \
   X(taper, 1, 1, none)                                                                                                 \
@@ -33,7 +36,7 @@ namespace gpgp::spawn::cga {
   X(roofHip, 1, 4, none)                                                                                               \
   X(roofPyramid, 1, 3, none)                                                                                           \
   X(roofShed, 1, 3, none)                                                                                              \
-  X(roofRidge, 0, 0, none)                                                                                             \
+  X(roofRidge, 1, 2, none)                                                                                             \
   X(envelope, 2, 10, none)                                                                                             \
   X(t, 3, 3, none)                                                                                                     \
   X(s, 3, 3, none)                                                                                                     \
@@ -50,6 +53,8 @@ namespace gpgp::spawn::cga {
   X(alignScopeToGeometryBBox, 0, 1, none)                                                                              \
   X(color, 1, 4, none)                                                                                                 \
   X(texture, 1, 1, none)                                                                                               \
+  X(setMaterial, 1, 1, none)                                                                                           \
+  X(resetMaterial, 0, 1, none)                                                                                         \
   X(report, 2, 2, none)                                                                                                \
   X(print, 1, 1, none)                                                                                                 \
   X(label, 1, 1, none)                                                                                                 \
@@ -65,6 +70,10 @@ namespace gpgp::spawn::cga {
   X(convexify, 0, 1, none)                                                                                             \
   X(deleteHoles, 0, 1, none)                                                                                           \
   X(reverseNormals, 0, 0, none)                                                                                        \
+  X(setNormals, 1, 1, none)                                                                                            \
+  X(softenNormals, 1, 1, none)                                                                                         \
+  X(footprint, 0, 0, none)                                                                                             \
+  X(trim, 0, 0, none)                                                                                                  \
   X(rectify, 1, 1, none)                                                                                               \
   X(reduceGeometry, 1, 1, none)                                                                                        \
   X(resetGeometry, 0, 0, none)                                                                                         \
@@ -79,6 +88,7 @@ namespace gpgp::spawn::cga {
   X(copyUV, 2, 2, none)                                                                                                \
   X(deleteUV, 1, 1, none)                                                                                              \
   X(tag, 1, 2, none)                                                                                                   \
+  X(setTagsFromEdgeAttrs, 0, 0, none)                                                                                  \
   X(deleteTags, 0, 2, none)
 
 // Set by set(name, value) although they are no attributes of the file.
@@ -92,12 +102,15 @@ namespace gpgp::spawn::cga {
   X(scope_sx)                                                                                                          \
   X(scope_sy)                                                                                                          \
   X(scope_sz)                                                                                                          \
+  X(trim_horizontal)                                                                                                   \
+  X(trim_vertical)                                                                                                     \
   X(material_color_r)                                                                                                  \
   X(material_color_g)                                                                                                  \
   X(material_color_b)                                                                                                  \
   X(material_opacity)                                                                                                  \
   X(material_colormap)                                                                                                 \
   X(material_rgb)                                                                                                      \
+  X(material_color_rgb)                                                                                                \
   X(seedian)
 
 // What the compiler writes between operations, for random numbers; no name of the language leads here. Paths are those
@@ -113,6 +126,7 @@ namespace gpgp::spawn::cga {
   X(str, 1, 1)                                                                                                         \
   X(float, 1, 1)                                                                                                       \
   X(bool, 1, 1)                                                                                                        \
+  X(sel, 1, 1)                                                                                                         \
   X(len, 1, 1)                                                                                                         \
   X(substring, 2, 3)                                                                                                   \
   X(find, 2, 3)                                                                                                        \
@@ -138,6 +152,10 @@ namespace gpgp::spawn::cga {
   X(listRemoveAll, 2, 2)                                                                                               \
   X(listRetainAll, 2, 2)                                                                                               \
   X(listClean, 1, 1)                                                                                                   \
+  X(listCount, 2, 2)                                                                                                   \
+  X(listTerminate, 1, 1)                                                                                               \
+  X(listToArray, 1, 1)                                                                                                 \
+  X(listFromArray, 1, 1)                                                                                               \
   X(size, 1, 1)                                                                                                        \
   X(nRows, 1, 1)                                                                                                       \
   X(nColumns, 1, 1)                                                                                                    \
@@ -147,6 +165,15 @@ namespace gpgp::spawn::cga {
   X(sortIndices, 1, 1)                                                                                                 \
   X(sort, 1, 1)                                                                                                        \
   X(transpose, 1, 1)                                                                                                   \
+  X(setElems, 3, 4)                                                                                                    \
+  X(sortRowIndices, 1, 1)                                                                                              \
+  X(isNull, 1, 1)                                                                                                      \
+  X(arrayRows, 1, 2000)                                                                                                \
+  X(sequence, 2, 3)                                                                                                    \
+  X(eachAnd, 2, 2)                                                                                                     \
+  X(eachOr, 2, 2)                                                                                                      \
+  X(eachNot, 1, 1)                                                                                                     \
+  X(componentResult, 0, 0)                                                                                             \
   X(floatArray, 0, 3)                                                                                                  \
   X(boolArray, 0, 3)                                                                                                   \
   X(stringArray, 0, 3)                                                                                                 \
@@ -175,8 +202,29 @@ namespace gpgp::spawn::cga {
   X(colorRamp, 2, 2)                                                                                                   \
   X(clamp, 3, 3)                                                                                                       \
   X(assetInfo, 2, 2)                                                                                                   \
+  X(assetNamingInfo, 2, 2)                                                                                             \
+  X(assetNamingInfos, 2, 2)                                                                                            \
+  X(assetMetadata, 3, 3)                                                                                               \
+  X(assetsSortSize, 3, 3)                                                                                              \
+  X(assetsSortRatio, 2, 2)                                                                                             \
+  X(assetBestSize, 2, 2)                                                                                               \
+  X(assetBestRatio, 2, 2)                                                                                              \
+  X(assetApproxSize, 3, 3)                                                                                             \
+  X(assetApproxRatio, 3, 3)                                                                                            \
+  X(assetFitSize, 3, 3)                                                                                                \
+  X(imageInfo, 2, 2)                                                                                                   \
+  X(imagesSortRatio, 2, 2)                                                                                             \
+  X(imageBestRatio, 2, 2)                                                                                              \
+  X(imageApproxRatio, 3, 3)                                                                                            \
+  X(readMaterial, 1, 1)                                                                                                \
+  X(getMaterial, 2, 2)                                                                                                 \
   X(printed, 1, 1)                                                                                                     \
-  X(convert, 5, 7)                                                                                                     \
+  X(Field, 1, 3)                                                                                                       \
+  X(getGeoCoord, 1, 1)                                                                                                 \
+  X(edgeAttr_getFloat, 1, 1)                                                                                           \
+  X(edgeAttr_getString, 1, 1)                                                                                          \
+  X(edgeAttr_getBool, 1, 1)                                                                                            \
+  X(convert, 4, 7)                                                                                                     \
   X(geometry_area, 0, 1)                                                                                               \
   X(geometry_volume, 0, 0)                                                                                             \
   X(geometry_height, 0, 1)                                                                                             \
@@ -208,7 +256,7 @@ namespace gpgp::spawn::cga {
   X(touches, 0, 2)                                                                                                     \
   X(minimumDistance, 1, 2)                                                                                             \
   X(contextCount, 2, 2)                                                                                                \
-  X(contextCompare, 4, 4)                                                                                              \
+  X(contextCompare, 3, 3)                                                                                              \
   X(scope_tx, 0, 0)                                                                                                    \
   X(scope_ty, 0, 0)                                                                                                    \
   X(scope_tz, 0, 0)                                                                                                    \
@@ -238,10 +286,13 @@ namespace gpgp::spawn::cga {
   X(initialShape_origin_ox, 0, 0)                                                                                      \
   X(initialShape_origin_oy, 0, 0)                                                                                      \
   X(initialShape_origin_oz, 0, 0)                                                                                      \
+  X(trim_horizontal, 0, 0)                                                                                             \
+  X(trim_vertical, 0, 0)                                                                                               \
   X(material_color_r, 0, 0)                                                                                            \
   X(material_color_g, 0, 0)                                                                                            \
   X(material_color_b, 0, 0)                                                                                            \
   X(material_rgb, 0, 0)                                                                                                \
+  X(material_color_rgb, 0, 0)                                                                                          \
   X(material_opacity, 0, 0)                                                                                            \
   X(material_colormap, 0, 0)                                                                                           \
   X(seedian, 0, 0)                                                                                                     \

@@ -1,5 +1,6 @@
 // Operations that change the current shape: where it is, how large, what colour; and primitives, assets, reports.
 #include "spawn/cga/deriver.h"
+#include "spawn/cga/rotation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,20 +8,6 @@
 namespace gpgp::spawn::cga {
 
 namespace {
-
-vec3 turned(const vec3& v, const vec3& x, const vec3& y, const vec3& z) { return x * v.x + y * v.y + z * v.z; }
-
-/// Columns of the rotation by angles in degrees: about x, then the new y, then the new z.
-struct Rotation {
-  vec3 x, y, z;
-  explicit Rotation(const vec3& degrees) {
-    const vec2 a = sineCosineDegrees(degrees.x), b = sineCosineDegrees(degrees.y), c = sineCosineDegrees(degrees.z);
-    // Rx Ry Rz
-    x = {b.y * c.y, a.x * b.x * c.y + a.y * c.x, a.x * c.x - a.y * b.x * c.y};
-    y = {-b.y * c.x, a.y * c.y - a.x * b.x * c.x, a.y * b.x * c.x + a.x * c.y};
-    z = {b.x, -a.x * b.y, a.y * b.y};
-  }
-};
 
 int hexDigit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -69,12 +56,13 @@ const std::string& Deriver::text(const CgaValue& v) {
     const ArrayValue& all = arrayOf(v);
     std::string result = "[";
     for (size_t i = 0; i < all.values.size() && i < 1000; ++i) {
-      if (i) result += ",";
+      if (i) result += i % std::max(1u, all.columns()) ? "," : ";";
       result += text(all.values[i]);
     }
     scratch_ = result + "]";
     return scratch_;
   }
+  case kCgaNothing: scratch_ = "NaN"; return scratch_;
   default: scratch_ = textOf(number(v)); return scratch_;
   }
 }
@@ -163,11 +151,11 @@ bool Deriver::cgaBlock(uint32_t operation, uint32_t first, uint32_t count, uint3
   };
   if (stopped_) return false;
   const bool goesOn = operation >= static_cast<uint32_t>(Operation::inline_) &&
-                      operation <= static_cast<uint32_t>(Operation::intersect_);
+                      operation <= static_cast<uint32_t>(Operation::componentValues_);
   made_ = made_ || !goesOn; // though it may make nothing
   operation_ = operationInfo(static_cast<Operation>(operation)).name;
   const bool isDone = (this->*kFunctions[operation])({&stack_[first], count}, table, base);
-  settleDraws();
+  if (operation != static_cast<uint32_t>(Operation::componentValues_)) settleDraws(); // which is within a value
   return isDone;
 }
 
@@ -305,17 +293,6 @@ bool Deriver::mirrorScope_(const Arguments& a) {
   return shape_.form.mesh == 0 || check(alignScope(pool_, shape_.form, to), "mirrorScope");
 }
 
-bool Deriver::setPivot_(const Arguments& a) {
-  Scope& s = shape_.form.scope;
-  const int corner = static_cast<int>(number(a[1])) & 7;
-  if (word(a[0]) != "xyz") warn("setPivot", "setPivot: axes stay in the order xyz");
-  shape_.pivot =
-      s.origin + turned(s.size * vec3(corner & 1, (corner >> 2) & 1, (corner >> 1) & 1), s.axisX, s.axisY, s.axisZ);
-  shape_.pivotX = s.axisX;
-  shape_.pivotY = s.axisY;
-  return true;
-}
-
 bool Deriver::alignScopeToAxes_(const Arguments& a) {
   const std::string_view which = a.count ? word(a[0]) : std::string_view();
   const uint32_t axis = which.ends_with('x') ? 0u : which.ends_with('y') ? 1u : which.ends_with('z') ? 2u : 3u;
@@ -422,12 +399,15 @@ bool Deriver::setAttributeOfShape(Operation operation, const CgaValue& v) {
   case Operation::set_scope_sx: resize(0); break;
   case Operation::set_scope_sy: resize(1); break;
   case Operation::set_scope_sz: resize(2); break;
+  case Operation::set_trim_horizontal: shape_.trimsHorizontal = cgaIsTrue(v); break;
+  case Operation::set_trim_vertical: shape_.trimsVertical = cgaIsTrue(v); break;
   case Operation::set_material_color_r: shape_.color.x = std::clamp(number(v), 0.0f, 1.0f); break;
   case Operation::set_material_color_g: shape_.color.y = std::clamp(number(v), 0.0f, 1.0f); break;
   case Operation::set_material_color_b: shape_.color.z = std::clamp(number(v), 0.0f, 1.0f); break;
   case Operation::set_material_opacity: shape_.color.w = std::clamp(number(v), 0.0f, 1.0f); break;
   case Operation::set_material_colormap: shape_.texture = strings_.number(text(v)); break;
-  case Operation::set_material_rgb: {
+  case Operation::set_material_rgb:
+  case Operation::set_material_color_rgb: {
     const CgaValue color = v;
     return color_({&color, 1});
   }
@@ -476,9 +456,9 @@ bool Deriver::primitive(Primitive kind, uint32_t sides, uint32_t rings, const ve
   }
   if (kind == Primitive::Cube || kind == Primitive::Quad) {
     shape_.form = boxes_.make(s, kind == Primitive::Cube ? boxes_.box : boxes_.flat);
-    return true;
+    return applyTrims();
   }
-  return check(insertPrimitive(pool_, shape_.form, kind, sides, rings), "primitive");
+  return check(insertPrimitive(pool_, shape_.form, kind, sides, rings), "primitive") && applyTrims();
 }
 
 bool Deriver::primitiveQuad_(const Arguments& a) {
@@ -536,35 +516,10 @@ bool Deriver::i_(const Arguments& a) {
   }
   std::string why;
   Form* asset = assetForm(path, why);
-  if (asset) return check(insertForm(pool_, shape_.form, *asset), "i");
+  if (asset) return check(insertForm(pool_, shape_.form, *asset), "i") && applyTrims();
   if (noRoom_ || stopped_) return false;
   warn("asset " + path, "the asset \"" + path + "\" is drawn as a box: " + why);
   return primitive(Primitive::Cube, 4, 2, vec3(0));
-}
-
-/// In the pool, once for each axiom.
-Form* Deriver::assetForm(const std::string& path, std::string& why) {
-  const auto [found, isNew] = assets_.try_emplace(path);
-  why = "there is no such file";
-  if (isNew) {
-    const std::string file = findFile(path);
-    Asset asset;
-    if (!file.empty() && options_.loadAsset && options_.loadAsset(file, asset, why) && !asset.indices.empty())
-      found->second = std::make_unique<Asset>(std::move(asset));
-  }
-  if (!found->second) return nullptr;
-  const auto [form, isNewForm] = assetForms_.try_emplace(path);
-  if (isNewForm) {
-    const std::vector<uint32_t> sizes(found->second->indices.size() / 3, 3);
-    const Status status = makeMesh(pool_, found->second->positions, found->second->indices, sizes, {}, form->second);
-    if (status != kGeometryOk) {
-      assetForms_.erase(path);
-      why = describeStatus(status);
-      if (status == kGeometryNoRoom || (status == kGeometryTooLarge && poolWords_ < (1u << 26))) noRoom_ = true;
-      return nullptr;
-    }
-  }
-  return &form->second;
 }
 
 bool Deriver::insertAlongUV_(const Arguments& a) {

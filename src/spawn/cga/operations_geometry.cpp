@@ -130,11 +130,6 @@ bool Deriver::roofShed_(const Arguments& a) {
   return roofBy(a, options, "roofShed");
 }
 
-bool Deriver::roofRidge_(const Arguments&) {
-  warn("roofRidge", "'roofRidge' is not supported, and does nothing");
-  return true;
-}
-
 /// envelope(normal or world.up, height, front base, front angle, right ..., back ..., left ...).
 bool Deriver::envelope_(const Arguments& a) {
   if (shape_.form.mesh == 0) return true;
@@ -188,10 +183,47 @@ bool Deriver::resetGeometry_(const Arguments&) {
   return true;
 }
 
+// ---------------------------------------------------------------- the pivot
+
+/// The scope's axes are exchanged and turned so that all of them point into the scope from one of its corners, which
+/// becomes its origin and the pivot. The geometry stays. Corners 0 to 3 go around the bottom, 4 to 7 around the top.
+bool Deriver::setPivot_(const Arguments& a) {
+  const std::string_view order = word(a[0]);
+  if (order != "xyz" && order != "yzx" && order != "zxy") {
+    warn("setPivot", "setPivot takes the orders xyz, yzx and zxy, not '" + std::string(order) + "'");
+    return true;
+  }
+  const Scope& s = shape_.form.scope;
+  const int corner = static_cast<int>(std::clamp(number(a[1]), 0.0f, 7.0f));
+  const bool atEnd[3] = {corner % 4 == 1 || corner % 4 == 2, corner >= 4, corner % 4 >= 2};
+  const vec3 axes[3] = {s.axisX, s.axisY, s.axisZ};
+  vec3 inwards[3];
+  for (int i = 0; i < 3; ++i) inwards[i] = atEnd[i] ? axes[i] * -1.0f : axes[i];
+  const int first = order == "xyz" ? 0 : order == "yzx" ? 2 : 1; // the old axis that becomes x
+  vec3 x = inwards[first], z = inwards[(first + 2) % 3];
+  const vec3 y = inwards[(first + 1) % 3];
+  if (glm::dot(glm::cross(x, y), z) < 0) std::swap(x, z);
+  if (first || corner) {
+    const vec3 origin = s.origin + s.axisX * (atEnd[0] ? s.size.x : 0.0f) + s.axisY * (atEnd[1] ? s.size.y : 0.0f) +
+                        s.axisZ * (atEnd[2] ? s.size.z : 0.0f);
+    if (shape_.form.mesh) {
+      if (!check(alignScope(pool_, shape_.form, {x, y, z}), "setPivot")) return false;
+    } else {
+      const auto extent = [&](const vec3& axis) {
+        return std::fabs(glm::dot(axis, s.axisX)) * s.size.x + std::fabs(glm::dot(axis, s.axisY)) * s.size.y +
+               std::fabs(glm::dot(axis, s.axisZ)) * s.size.z;
+      };
+      shape_.form.scope = {origin, x, y, z, {extent(x), extent(y), extent(z)}};
+    }
+  }
+  resetPivot(shape_);
+  return true;
+}
+
 // ---------------------------------------------------------------- labels
 
 bool Deriver::label_(const Arguments& a) {
-  labels_.push_back({strings_.number(text(a[0])), makeHull(pool_, shape_.form), shape_.key});
+  labels_.push_back({strings_.number(text(a[0])), makeHull(pool_, shape_.form), shape_.key, ownArea()});
   return true;
 }
 

@@ -12,26 +12,6 @@ namespace {
 
 constexpr size_t kMostPieces = 1'000'000;
 
-std::vector<SplitPart> readParts(const uint32_t* words, uint32_t table, const CgaValue* values, float whole) {
-  std::vector<SplitPart> parts(words[table]);
-  for (uint32_t i = 0; i < words[table]; ++i) {
-    const uint32_t record = words[table + 1 + i], kind = words[record + kCgaPartKind];
-    SplitPart& part = parts[i];
-    if (kind == kCgaPartGroup || kind == kCgaPartRepeated) {
-      part.kind = kind == kCgaPartGroup ? SplitPart::Kind::group : SplitPart::Kind::repeated;
-      part.parts = readParts(words, words[record + kCgaPartBody], values, whole);
-      continue;
-    }
-    const CgaValue v = values[words[record + kCgaPartSelector]];
-    const bool isNumber = v.type == kCgaFloat || v.type == kCgaRelative || v.type == kCgaFloating;
-    const float size = isNumber ? uintBitsToFloat(v.bits) : 0.0f;
-    part.kind = v.type == kCgaFloating ? SplitPart::Kind::floating : SplitPart::Kind::absolute;
-    part.size = v.type == kCgaRelative ? multiply(size, whole) : size;
-    part.body = words[record + kCgaPartBody];
-  }
-  return parts;
-}
-
 struct Selection {
   Selector selector;
   bool known = true;
@@ -289,26 +269,32 @@ bool Deriver::comp_(const Arguments& a, uint32_t table, uint32_t base) {
   if (!isBox) components.emplace(pool_, shape_.form, kind);
   const uint32_t count = isBox ? boxes_.faces(shape_.form) : components->count();
   const uint32_t parts = words_[table];
-  // The first part that selects a component has it.
-  std::vector<std::vector<uint32_t>> selected(parts);
-  for (uint32_t i = 0; i < count; ++i)
-    for (uint32_t p = 0; p < parts; ++p) {
-      const uint32_t record = words_[table + 1 + p];
-      const CgaValue& value = a.values[words_[record + kCgaPartSelector]];
-      if (!selects(word(value), components ? &*components : nullptr, i, count, value)) continue;
-      selected[p].push_back(i);
-      break;
-    }
+  const std::vector<std::vector<uint32_t>> selected = selectedBy(components ? &*components : nullptr, count, a, table);
+  std::vector<std::vector<TrimPlane>> trims;
+  if (!isBox && kind == Component::Faces) trims = trimPlanes(pool_, shape_.form);
   for (uint32_t p = 0; p < parts; ++p) {
     if (selected[p].empty()) continue;
     const uint32_t record = words_[table + 1 + p];
     const CgaValue& value = a.values[words_[record + kCgaPartSelector]];
-    const bool together = words_[record + kCgaPartKind] == kCgaPartTogether;
-    const uint32_t total = together ? 1u : static_cast<uint32_t>(selected[p].size());
+    const bool together = words_[record + kCgaPartKind] != kCgaPartEach;
+    std::optional<Components> connected;
+    Form all;
+    if (words_[record + kCgaPartKind] == kCgaPartConnected) { // as many shapes as hang together
+      const Status status = toComponents(pool_, shape_.form, kind, selected[p], all);
+      if (status == kGeometryEmpty) continue;
+      if (status != kGeometryOk) {
+        if (!check(status, "comp")) return false;
+        continue;
+      }
+      connected.emplace(pool_, all, Component::Groups);
+    }
+    const uint32_t total = connected ? connected->count() : together ? 1u : static_cast<uint32_t>(selected[p].size());
     for (uint32_t i = 0; i < total; ++i) {
       Form form;
       Status status = kGeometryOk;
-      if (together)
+      if (connected)
+        status = connected->take(i, form);
+      else if (together)
         status = toComponents(pool_, shape_.form, kind, selected[p], form);
       else if (isBox)
         form = boxes_.face(shape_.form, selected[p][i]);
@@ -326,6 +312,10 @@ bool Deriver::comp_(const Arguments& a, uint32_t table, uint32_t base) {
       part.compTotal = total;
       part.compSelector = value.type == kCgaWord ? value.bits : strings_.number(text(value));
       if (!together) resetPivot(part);
+      if (!together && !trims.empty())
+        setTrims(part, trims[selected[p][i]]);
+      else
+        part.trims = 0;
       if (!addChild(part, words_[record + kCgaPartBody], base)) return false;
     }
   }
@@ -412,38 +402,15 @@ bool Deriver::setbackEach(bool isArray, const std::vector<float>& each, const Ar
 bool Deriver::setbackPerEdge_(const Arguments& a, uint32_t table, uint32_t base) {
   if (shape_.form.mesh == 0) return true;
   const uint32_t chunk = words_[words_[table + words_[table]] + kCgaPartBody], top = topOf(a);
-  const uint32_t count = words_[chunk + kCgaChunkParameters];
   const Components components(pool_, shape_.form, Component::FaceEdges);
-  const Shape whole = shape_;
   std::vector<float> each;
   for (uint32_t i = 0; i < components.count(); ++i) {
     Form edge;
-    if (!works(count + 1)) return false;
     if (!check(components.take(i, edge), "setbackPerEdge")) return false;
-    shape_ = whole;
-    shape_.form = edge;
-    shape_.compIndex = i;
-    shape_.compTotal = components.count();
-    shape_.key = childKey(whole.key, 0x30000000u + i);
-    shape_.draws = 0;
-    resetPivot(shape_);
-    hasHull_ = false;
-    if (top + count >= kStackSize) {
-      fail("values of rule '" + program_.strings[words_[chunk_]] + "' need more than " + std::to_string(kStackSize) +
-           " places");
-      return false;
-    }
-    for (uint32_t v = 0; v < count; ++v) stack_[top + v] = stack_[base + v];
-    const uint32_t how = cgaRun(chunk, top);
-    shape_ = whole;
-    drawn_ = false;
-    if (how != kCgaDone) {
-      fail("the distance of setbackPerEdge has no value");
-      return false;
-    }
-    each.push_back(number(stack_[top]));
+    CgaValue distance;
+    if (!valueOn(chunk, base, top, edge, i, components.count(), distance)) return false;
+    each.push_back(number(distance));
   }
-  hasHull_ = false;
   return setbackEach(true, each, a, table, base);
 }
 

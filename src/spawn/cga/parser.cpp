@@ -1,5 +1,6 @@
 // Recursive descent.
 #include "spawn/cga/parser.h"
+#include "spawn/cga/operator_levels.h"
 #include "spawn/cga/token_reader.h"
 
 #include <algorithm>
@@ -7,14 +8,6 @@
 
 namespace gpgp::spawn::cga {
 namespace {
-
-struct OperatorLevel {
-  std::string_view text;
-  int level;
-};
-constexpr OperatorLevel kOperators[] = {{"||", 1}, {"&&", 2}, {"==", 3}, {"!=", 3}, {".==", 3}, {".!=", 3}, {"<", 4},
-                                        {"<=", 4}, {">", 4},  {">=", 4}, {".<", 4}, {".<=", 4}, {".>", 4},  {".>=", 4},
-                                        {"+", 5},  {"-", 5},  {"*", 6},  {"/", 6},  {"%", 6}};
 
 class Parser : TokenReader {
 public:
@@ -33,10 +26,16 @@ public:
   }
 
 private:
-  // --- definitions ---
   void definition(File& file) {
+    hasDepths_ = false; // whatever an error left
     std::vector<Annotation> annotations;
-    while (token().is("@")) annotations.push_back(annotation());
+    while (token().is("@")) {
+      Annotation a = annotation();
+      if (a.name == "Group")
+        group_ = std::make_shared<const Annotation>(std::move(a)); // of what comes from here on
+      else
+        annotations.push_back(std::move(a));
+    }
     Definition d;
     d.place = token().place;
     if (token().isWord("version") && token(1).kind == TokenKind::string) {
@@ -46,7 +45,7 @@ private:
     }
     if (token().isWord("import") && (isName(1) || token(1).kind == TokenKind::string)) {
       ++at_;
-      import(file);
+      import(file, annotations);
       return;
     }
     if (token().isWord("style") && isName(1) && !arrowBehind(0)) {
@@ -71,6 +70,7 @@ private:
     }
     if (!isName()) unexpected("a definition: attr, const, import, a function or a rule");
     d.annotations = std::move(annotations);
+    d.group = group_;
     d.style = style_;
     try {
       named(d);
@@ -163,11 +163,22 @@ private:
     return make(Expression::Kind::string, place);
   }
 
-  void import(File& file) {
+  void import(File& file, const std::vector<Annotation>& annotations) {
     Import import;
     import.place = token().place;
+    for (const Annotation& a : annotations) {
+      if (a.name != "Hidden") continue;
+      import.hidesAll |= a.arguments.empty();
+      for (const AnnotationArgument& hidden : a.arguments)
+        if (hidden.value) import.hides.push_back(hidden.value->text);
+    }
     if (isName()) {
       import.prefix = tokens_[at_++].text;
+      if (accept("(")) { // the styles that it offers, of which the first is taken
+        import.style = name("the name of a style");
+        while (accept(",")) name("the name of a style");
+        expect(")", "behind the styles of an import");
+      }
       expect(":", "behind the prefix of an import");
     }
     if (token().kind != TokenKind::string) unexpected("the path of a .cga file in quotes");
@@ -179,10 +190,15 @@ private:
       import.style = name("the name of a style");
     }
     if (accept("(")) {
+      import.protectsAll = token().is(")");
       while (!token().is(")")) {
-        Definition d;
-        named(d);
-        import.overrides.push_back(std::move(d));
+        if (isName() && (token(1).is(",") || token(1).is(")"))) {
+          import.isProtected.push_back(name("the name of an attribute"));
+        } else {
+          Definition d;
+          named(d);
+          import.overrides.push_back(std::move(d));
+        }
         if (!accept(",")) break;
       }
       expect(")", "behind what an import passes");
@@ -199,22 +215,6 @@ private:
     --braces_;
     expect("}", "at the end of a block");
     return result;
-  }
-
-  bool endsBody() const {
-    const Token& t = token();
-    return t.kind == TokenKind::end || t.is("|") || t.is("}") || t.is(")") || t.is(",") || startsDefinition();
-  }
-  /// A number or an expression in parentheses, with % and : behind it.
-  bool startsPercentage() const {
-    if (token().kind == TokenKind::number) return token(1).is("%") && token(2).is(":");
-    if (token().is("(")) {
-      const size_t behind = behindParentheses(0);
-      return token(behind).is("%") && token(behind + 1).is(":");
-    }
-    return isName() &&
-           ((token(1).is("%") && token(2).is(":")) ||
-            (token(1).is("(") && token(behindParentheses(1)).is("%") && token(behindParentheses(1) + 1).is(":")));
   }
 
   Body body() {
@@ -310,14 +310,10 @@ private:
     return result;
   }
 
-  /// What is derived at once: of a block, or of the one statement behind it.
-  static bool isInlined(std::string_view name) {
-    return name == "inline" || name == "union" || name == "subtract" || name == "intersect";
-  }
-
   void block(Statement& s) {
     s.hasBlock = true;
-    if (s.name == "scatter" || s.name == "modify" || isInlined(s.name)) {
+    if (s.name == "splitAndSetbackPerimeter") return perimeter(s);
+    if (s.name == "scatter" || isInlined(s.name)) {
       expect("{", "");
       const bool hasTwo = isInlined(s.name) && s.name != "inline";
       s.parts = inBraces([&] {
@@ -334,6 +330,16 @@ private:
       s.parts = group();
     }
     s.repeats = accept("*");
+  }
+
+  /// { length : depth : operations | ... }* { remainder : operations }: the first is a group beside the remainder.
+  void perimeter(Statement& s) {
+    const bool outer = std::exchange(hasDepths_, true);
+    Part sections = part();
+    hasDepths_ = outer;
+    if (!token().is("{")) unexpected("{ remainder : ... } behind the parts of the perimeter");
+    s.parts = group();
+    s.parts.insert(s.parts.begin(), std::move(sections));
   }
 
   std::vector<Part> group() {
@@ -359,11 +365,18 @@ private:
       return result;
     }
     result.selector = expression();
-    if (accept("="))
+    if (accept("=")) {
       result.isOneShape = true;
-    else if (!accept(":"))
+      result.isConnected = accept(":");
+    } else if (!accept(":"))
       unexpected("':' behind a size or a selector");
+    if (hasDepths_) {
+      result.depth = expression();
+      expect(":", "behind a depth");
+    }
+    const bool outer = std::exchange(hasDepths_, false);
     result.body = body();
+    hasDepths_ = outer;
     return result;
   }
 
@@ -437,13 +450,14 @@ private:
     const auto kind = t.is("'")   ? Expression::Kind::relative
                       : t.is("~") ? Expression::Kind::floating
                                   : Expression::Kind::unary;
-    if (!t.is("-") && !t.is("!") && !t.is("+") && !t.is("'") && !t.is("~")) return postfix();
+    if (!t.is("-") && !t.is("!") && !t.is("+") && !t.is("'") && !t.is("~") && !t.is(".-") && !t.is(".+") && !t.is(".!"))
+      return postfix();
     ExpressionPtr result = make(kind, t.place, t.text);
     ++at_;
     // ~a * b is a floating size of a * b; -a * b is (-a) * b.
     result->arguments.push_back(kind == Expression::Kind::unary ? unary() : expression(5));
     settleDepth(*result);
-    if (result->text == "+") return std::move(result->arguments[0]);
+    if (result->text == "+" || result->text == ".+") return std::move(result->arguments[0]);
     return result;
   }
 
@@ -464,10 +478,12 @@ private:
     return result;
   }
   static bool canBeIndexed(const Expression& e) {
-    return e.kind == Expression::Kind::name || e.kind == Expression::Kind::array || e.kind == Expression::Kind::index ||
-           e.kind == Expression::Kind::binary;
+    return e.kind == Expression::Kind::name || e.kind == Expression::Kind::array || e.kind == Expression::Kind::rows ||
+           e.kind == Expression::Kind::index || e.kind == Expression::Kind::binary ||
+           e.kind == Expression::Kind::components;
   }
 
+  /// A value of an array or an index, or first:last, or first:step:last; of an index either end may be missing.
   ExpressionPtr indexRange() {
     const Place place = token().place;
     ExpressionPtr first = token().is(":") ? nullptr : choices();
@@ -475,8 +491,55 @@ private:
     ExpressionPtr range = make(Expression::Kind::range, place);
     range->arguments.push_back(std::move(first));
     range->arguments.push_back(token().is("]") || token().is(",") ? nullptr : choices());
+    if (accept(":")) range->arguments.push_back(choices());
     settleDepth(*range);
     return range;
+  }
+
+  /// Behind its [: values, and rows of them by semicolons.
+  ExpressionPtr arrayLiteral(Place place) {
+    std::vector<ExpressionPtr> rows;
+    do {
+      ExpressionPtr row = make(Expression::Kind::array, place);
+      while (!token().is("]") && !token().is(";")) {
+        row->arguments.push_back(indexRange());
+        if (!accept(",")) break;
+      }
+      settleDepth(*row);
+      rows.push_back(std::move(row));
+    } while (accept(";"));
+    expect("]", "at the end of an array");
+    if (rows.size() == 1) return std::move(rows[0]);
+    ExpressionPtr result = make(Expression::Kind::rows, place);
+    result->arguments = std::move(rows);
+    settleDepth(*result);
+    return result;
+  }
+
+  /// comp(f) { selector: value | ... } as a value.
+  ExpressionPtr componentValues(ExpressionPtr call) {
+    call->kind = Expression::Kind::components;
+    expect("{", "");
+    call->parts = inBraces([&] {
+      std::vector<Part> parts;
+      while (!token().is("}")) {
+        Part part;
+        part.place = token().place;
+        part.selector = expression();
+        if (accept("="))
+          part.isOneShape = true;
+        else if (!accept(":"))
+          unexpected("':' behind a selector");
+        part.value = choices();
+        settleDepth(*part.value);
+        call->depth = std::max(call->depth, part.value->depth + 1);
+        parts.push_back(std::move(part));
+        if (!accept("|")) break;
+      }
+      return parts;
+    });
+    settleDepth(*call);
+    return call;
   }
 
   ExpressionPtr primary() {
@@ -506,6 +569,7 @@ private:
         result->isCall = true;
         result->arguments = arguments();
         settleDepth(*result);
+        if (result->text == "comp" && token().is("{")) return componentValues(std::move(result));
       }
       return result;
     }
@@ -514,21 +578,14 @@ private:
       expect(")", "behind an expression");
       return result;
     }
-    if (accept("[")) {
-      ExpressionPtr result = make(Expression::Kind::array, place);
-      while (!token().is("]")) {
-        result->arguments.push_back(choices());
-        if (!accept(",") && !accept(";")) break;
-      }
-      expect("]", "at the end of an array");
-      settleDepth(*result);
-      return result;
-    }
+    if (accept("[")) return arrayLiteral(place);
     unexpected("a value");
   }
 
   std::string style_;
+  std::shared_ptr<const Annotation> group_;
   uint32_t branches_ = 0;
+  bool hasDepths_ = false; ///< the parts of a perimeter are read
 };
 
 } // namespace

@@ -66,6 +66,12 @@ struct RuleInfo {
   bool isStart = false, isHidden = false;
 };
 
+/// A field of the world that is named by a string, Field("terrain").
+struct FieldRead {
+  std::string name, file;
+  Place place;
+};
+
 /// Where the instruction at a word comes from.
 struct SourceOf {
   uint32_t at = 0, file = 0;
@@ -76,13 +82,16 @@ struct Program {
   std::vector<uint32_t> words; ///< word 0 is no chunk
   std::vector<std::string> strings;
   std::vector<AttributeInfo> attributes; ///< by slot
-  std::vector<uint32_t> order;           ///< slots, each behind those that its value needs
+  std::vector<uint32_t> order;           ///< slots that the start needs, each behind those that its value needs
+  std::vector<uint32_t> wholeOrder;      ///< all slots, likewise
   std::vector<RuleInfo> rules;
   uint32_t start = 0; ///< of rules
   std::vector<std::string> files;
   std::vector<SourceOf> sources; ///< in the order of words
+  std::vector<FieldRead> fields; ///< each once, where it is read first
   std::string folder;            ///< of the main file, with a / at its end: where paths of assets begin
   GraphText graph;               ///< where CompileOptions::graph asks for it
+  bool asksOwnTags = false;      ///< for what extrusions and splits say of their faces
 
   const SourceOf* sourceOf(uint32_t at) const;
 };

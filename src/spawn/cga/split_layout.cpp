@@ -111,6 +111,30 @@ private:
 
 } // namespace
 
+std::vector<SplitPart> readParts(const uint32_t* words, uint32_t table, const shader::CgaValue* values, float whole) {
+  using namespace shader;
+  std::vector<SplitPart> parts;
+  for (uint32_t i = 0; i < words[table]; ++i) {
+    const uint32_t record = words[table + 1 + i], kind = words[record + kCgaPartKind];
+    SplitPart part;
+    if (kind == kCgaPartGroup || kind == kCgaPartRepeated) {
+      part.kind = kind == kCgaPartGroup ? SplitPart::Kind::group : SplitPart::Kind::repeated;
+      part.parts = readParts(words, words[record + kCgaPartBody], values, whole);
+      parts.push_back(std::move(part));
+      continue;
+    }
+    if (words[record + kCgaPartSelector] == kCgaNoSelector) continue;
+    const CgaValue v = values[words[record + kCgaPartSelector]];
+    const bool isNumber = v.type == kCgaFloat || v.type == kCgaRelative || v.type == kCgaFloating;
+    const float size = isNumber ? uintBitsToFloat(v.bits) : 0.0f;
+    part.kind = v.type == kCgaFloating ? SplitPart::Kind::floating : SplitPart::Kind::absolute;
+    part.size = v.type == kCgaRelative ? multiply(size, whole) : size;
+    part.body = words[record + kCgaPartBody];
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
 bool layOut(const std::vector<SplitPart>& parts, float length, size_t most, std::vector<Piece>& pieces) {
   pieces.clear();
   return !(length > 0) || Layout(length, most, pieces).list(parts, static_cast<double>(length));

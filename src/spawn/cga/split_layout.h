@@ -26,6 +26,10 @@ struct Piece {
   shader::uvec2 key = {0, 0}; ///< of layOutPlain(): of the path
 };
 
+/// The parts of a table (program_format.h); values: of the block. 'x is a part of whole. Records of values are left
+/// out.
+std::vector<SplitPart> readParts(const uint32_t* words, uint32_t table, const shader::CgaValue* values, float whole);
+
 /// False: there are more than most pieces.
 bool layOut(const std::vector<SplitPart>& parts, float length, size_t most, std::vector<Piece>& pieces);
 

@@ -17,19 +17,23 @@ struct Choice {
   ExpressionPtr condition, value;
 };
 
+struct Part;
+
 struct Expression {
   enum class Kind : uint8_t {
     number,
     string,
     boolean,
-    name,     ///< text, and arguments where isCall
-    unary,    ///< text is - or !
-    binary,   ///< text is the operator
-    relative, ///< 'x
-    floating, ///< ~x
-    index,    ///< arguments: the array, then one for each dimension: an index, or a range
-    range,    ///< first:last, either may be missing
-    array,    ///< [a, b, c]
+    name,       ///< text, and arguments where isCall
+    unary,      ///< text is - or !
+    binary,     ///< text is the operator
+    relative,   ///< 'x
+    floating,   ///< ~x
+    index,      ///< arguments: the array, then one for each dimension: an index, or a range
+    range,      ///< first:last, either may be missing; or first:step:last
+    array,      ///< [a, b, c]
+    rows,       ///< [a, b; c, d]: arguments are arrays
+    components, ///< comp(f) { selector: value }
     cases,
     stochastic
   };
@@ -40,7 +44,11 @@ struct Expression {
   bool isCall = false;
   std::vector<ExpressionPtr> arguments;
   std::vector<Choice> choices;
-  uint32_t depth = 1; ///< of the tree, bounded by the parser
+  std::vector<Part> parts; ///< of components
+  uint32_t depth = 1;      ///< of the tree, bounded by the parser
+
+  Expression();
+  ~Expression();
 };
 
 struct Statement;
@@ -49,8 +57,11 @@ using Body = std::vector<Statement>;
 /// One of the parts of { a | b | c }.
 struct Part {
   Place place;
-  ExpressionPtr selector;  ///< none: a group, or a block that has no selectors
-  bool isOneShape = false; ///< selector = operations: all that it selects is one shape
+  ExpressionPtr selector;   ///< none: a group, or a block that has no selectors
+  bool isOneShape = false;  ///< selector = operations: all that it selects is one shape
+  bool isConnected = false; ///< selector =: operations: what of that hangs together is one
+  ExpressionPtr value;      ///< of components, in place of a body
+  ExpressionPtr depth;      ///< of splitAndSetbackPerimeter, worked out for each part of the perimeter
   Body body;
   std::vector<Part> group; ///< a nested { ... }
   bool isGroup = false, repeats = false;
@@ -80,6 +91,9 @@ struct Statement {
   std::vector<Branch> branches;
 };
 
+inline Expression::Expression() = default;
+inline Expression::~Expression() = default;
+
 struct AnnotationArgument {
   std::string name; ///< empty where it has none
   ExpressionPtr value;
@@ -105,6 +119,7 @@ struct Definition {
   bool isStart = false; ///< by @StartRule or the keyword
   bool hasBody = false; ///< of rules: it began, whether or not it could be read
   std::vector<Annotation> annotations;
+  std::shared_ptr<const Annotation> group; ///< the @Group that was said last before it
   std::vector<Local> locals;
   ExpressionPtr value; ///< of all but rules
   Body body;
@@ -114,7 +129,11 @@ struct Definition {
 struct Import {
   std::string prefix, path, style;
   Place place;
-  std::vector<Definition> overrides; ///< values of attributes, and rules
+  std::vector<Definition> overrides;    ///< values of attributes, and rules
+  std::vector<std::string> isProtected; ///< attributes that keep their own values
+  bool protectsAll = false;             ///< by (): of all
+  std::vector<std::string> hides;       ///< attributes that @Hidden(...) before it names
+  bool hidesAll = false;                ///< by @Hidden
 };
 
 struct Style {

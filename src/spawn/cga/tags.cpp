@@ -70,19 +70,25 @@ bool Deriver::tagNames(const Arguments& a, uint32_t set, uint32_t clear) {
                set ? "tag" : "deleteTags");
 }
 
-bool Deriver::tag_(const Arguments& a) {
-  const uint32_t name = strings_.number(text(a[0]));
+uint32_t Deriver::tagBit(const std::string& name) {
+  const uint32_t number = strings_.number(name);
   size_t bit = 0;
-  while (bit < tagNames_.size() && tagNames_[bit] != name) ++bit;
+  while (bit < tagNames_.size() && tagNames_[bit] != number) ++bit;
   if (bit == tagNames_.size()) {
     if (bit == kMostNames) {
-      warn("tags", "'" + text(a[0]) + "' is left out: the shapes of an axiom have at most " +
-                       std::to_string(kMostNames) + " tags of different names");
-      return true;
+      warn("tags", "'" + name + "' is left out: the shapes of an axiom have at most " + std::to_string(kMostNames) +
+                       " tags of different names");
+      return 0;
     }
-    tagNames_.push_back(name);
+    tagNames_.push_back(number);
   }
-  return tagNames(a, kTagUser << bit, 0);
+  return kTagUser << bit;
+}
+
+bool Deriver::tag_(const Arguments& a) {
+  const std::string name = text(a[0]);
+  const uint32_t bit = tagBit(name);
+  return bit == 0 || tagNames(a, bit, 0);
 }
 
 bool Deriver::deleteTags_(const Arguments& a) {
@@ -114,14 +120,13 @@ CgaValue Deriver::geometry_tags_(const Arguments& a) {
     if (found & (kTagUser << i)) names.values.push_back(cgaMake(kCgaString, tagNames_[i]));
   for (const OwnTag& tag : kOwnTags)
     if (found & tag.bit) names.values.push_back(stringValue(tag.name));
-  names.columns = std::max<uint32_t>(static_cast<uint32_t>(names.values.size()), 1u);
   return array(std::move(names));
 }
 
 /// Edges beside streets are the front; of the others those that face away from it are the back, and the rest lie to its
 /// left or right, seen from the street.
 void Deriver::tagStreets(const Axiom& axiom) {
-  if (boxes_.is(shape_.form)) {
+  if (boxes_.isShared(shape_.form)) {
     Form own = shape_.form; // a mesh of its own, which can be tagged
     if (tagAll(pool_, own, false, false, 0, 0) == kGeometryOk) shape_.form = own;
   }

@@ -93,6 +93,26 @@ protected:
     const size_t arrow = arrowBehind(0);
     return arrow && (braces_ == 0 || token(arrow).is("-->"));
   }
+  /// What is derived at once: of a block, or of the one statement behind it.
+  static bool isInlined(std::string_view name) {
+    return name == "inline" || name == "union" || name == "subtract" || name == "intersect";
+  }
+  bool endsBody() const {
+    const Token& t = token();
+    return t.kind == TokenKind::end || t.is("|") || t.is("}") || t.is(")") || t.is(",") || startsDefinition();
+  }
+  /// A number or an expression in parentheses, with % and : behind it.
+  bool startsPercentage() const {
+    if (token().kind == TokenKind::number) return token(1).is("%") && token(2).is(":");
+    if (token().is("(")) {
+      const size_t behind = behindParentheses(0);
+      return token(behind).is("%") && token(behind + 1).is(":");
+    }
+    return isName() &&
+           ((token(1).is("%") && token(2).is(":")) ||
+            (token(1).is("(") && token(behindParentheses(1)).is("%") && token(behindParentheses(1) + 1).is(":")));
+  }
+
   /// Goes on to the next definition.
   void recover() {
     braces_ = depth_ = 0;

@@ -14,8 +14,8 @@ namespace gpgp::spawn {
 /// run on a thread with a large stack. A failure is a defect of ours: its text holds the compiler's first messages.
 core::Result<std::vector<uint32_t>> compileKernel(const KernelSource& source, KernelTarget target);
 
-/// SPIR-V as kernels have it: inlined and cleaned up. Empty where the optimiser fails.
-std::vector<uint32_t> optimize(std::span<const uint32_t> spirv);
+/// SPIR-V as kernels have it: cleaned up, and inlined but for software devices. Empty where the optimiser fails.
+std::vector<uint32_t> optimize(std::span<const uint32_t> spirv, KernelTarget target);
 
 /// Whether its kernels would be more than the interpreter: less than half of the operators are run by the graph's
 /// words.

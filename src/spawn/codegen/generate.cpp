@@ -37,6 +37,7 @@ public:
 
   KernelSource run() {
     if (graph_.phases) add("#define GPGP_COLLIDERS\n");
+    if (!graph_.fields.empty()) add("#define GPGP_FIELDS\n");
     room_ = findRoom(graph_, waits_, first_, entered(), table_.chooses);
     uint32_t operators = 0;
     for (const Node& node : graph_.nodes) {
@@ -163,6 +164,10 @@ private:
             word(node, true, [&](const Node& peer) { return graph_.code[parameterOf(peer, index).value + at]; }));
       } else if (code >= kCodeAttributes) {
         stack.push_back(attribute(code));
+      } else if (isField(code)) {
+        const std::string z = std::move(stack.back());
+        stack.pop_back();
+        stack.back() = "readField(s, " + number(code - kCodeField) + ", " + stack.back() + ", " + z + ")";
       } else {
         const std::string b = std::move(stack.back());
         stack.pop_back();

@@ -6,8 +6,8 @@ namespace gpgp::spawn {
 namespace {
 using namespace shader;
 
-/// What the camera sees of a shape is as much code as so many others.
-constexpr uint32_t kSeenCodes = 24;
+/// What the camera sees of a shape is as much code as so many others, and what a field has at a place of it.
+constexpr uint32_t kSeenCodes = 24, kFieldCodes = 12;
 
 /// Of an operator's expressions.
 uint32_t codesOf(const Graph& graph, const Node& node) {
@@ -16,6 +16,7 @@ uint32_t codesOf(const Graph& graph, const Node& node) {
     if (const Parameter& p = graph.parameters[node.firstParameter + i]; hasProgram(p.kind))
       for (uint32_t at = p.value; graph.code[at] != kCodeEnd && codes < 8 * kRoom; ++at, ++codes) {
         if (graph.code[at] >= kCodeView) codes += kSeenCodes;
+        if (isField(graph.code[at])) codes += kFieldCodes;
         if (graph.code[at] == kCodeNumber) ++at;
       }
   return codes;

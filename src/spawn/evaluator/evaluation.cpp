@@ -269,11 +269,30 @@ core::Result<void> Evaluation::derive(const GpgpEvaluationInfo& info, const Vert
   }
 }
 
+namespace {
+/// What an axiom has that is context: what went wrong with its colliders, and no terminals.
+GpgpEvaluatedAxiom contextOf(const GpgpEvaluatedAxiom& derived) {
+  GpgpEvaluatedAxiom axiom{};
+  axiom.status = derived.status;
+  axiom.shapes = derived.shapes;
+  axiom.droppedShapes = derived.droppedShapes;
+  axiom.unfinishedShapes = derived.unfinishedShapes;
+  axiom.depth = derived.depth;
+  for (int k = 0; k < 3; ++k) {
+    axiom.bounds.min[k] = std::numeric_limits<float>::infinity();
+    axiom.bounds.max[k] = -std::numeric_limits<float>::infinity();
+  }
+  return axiom;
+}
+} // namespace
+
 core::Result<void> Evaluation::run(const GpgpEvaluationInfo& info, const VertexLayout* layout) {
   axioms_.resize(info.axiomCount, GpgpEvaluatedAxiom{});
   const TerminalFilter filter(info, &memory_);
   const auto view = viewOf(info.camera);
   if (!view) return view.error();
+  const auto fields = bindFields(grammar_.graph, {info.fields, info.fieldCount});
+  if (!fields) return fields.error();
   Measuring measuring{};
   if (info.measures) {
     const auto checked = measuringOf(*info.measures, static_cast<uint32_t>(grammar_.graph.terminals.size()));
@@ -288,7 +307,8 @@ core::Result<void> Evaluation::run(const GpgpEvaluationInfo& info, const VertexL
              .keeps = !(info.flags & GPGP_EVALUATION_COUNT_ONLY),
              .filter = info.keys || info.region ? &filter : nullptr,
              .vertices = layout,
-             .view = &*view},
+             .view = &*view,
+             .fields = &*fields},
             info.maxShapesPerAxiom ? info.maxShapesPerAxiom : 1u << 27,
             axioms_.data(),
             info.measures ? &measuring : nullptr,
@@ -333,6 +353,10 @@ core::Result<void> Evaluation::run(const GpgpEvaluationInfo& info, const VertexL
   if (auto ok = forAll(&AxiomRange::finish, phases); !ok) return ok;
   result_.rangeCount = ranges;
   result_.colliders = task.linked.colliders.size();
+  for (uint32_t i = info.axiomCount - info.contextCount; i < info.axiomCount; ++i) {
+    axioms_[i] = contextOf(axioms_[i]);
+    if (info.measures) measures_[i] = {};
+  }
   merge();
   return {};
 }

@@ -17,7 +17,8 @@ public:
                 {.maxDepth = options.maxDepth,
                  .keeps = options.keepInstances,
                  .vertices = options.vertices,
-                 .view = options.view},
+                 .view = options.view,
+                 .fields = options.fields},
                 out.buckets.data(), memory_) {}
 
   void run(uint32_t phases) {

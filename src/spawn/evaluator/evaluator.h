@@ -13,6 +13,7 @@ struct DeriveOptions {
   bool keepInstances = true;              ///< false: only count
   const VertexLayout* vertices = nullptr; ///< instances come with their vertices
   const shader::View* view = nullptr;     ///< of a camera (schedule/camera.h)
+  const BoundFields* fields = nullptr;    ///< in host memory (schedule/fields.h); null: the grammar reads none
   uint64_t maxShapes = 100'000'000;       ///< gives up beyond, so that a grammar without end cannot hang the caller
 };
 

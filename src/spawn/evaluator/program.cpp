@@ -50,7 +50,7 @@ uint32_t addTerms(std::pmr::vector<Term>& terms, const uint32_t* words, uint32_t
     };
     bool plain = operand();
     while (plain && *code != kCodeEnd) {
-      plain = operand() && *code != kCodeNumber && *code < kCodeAttributes && *code != kCodeEnd;
+      plain = operand() && *code != kCodeNumber && *code < kCodeField && *code != kCodeEnd;
       if (!plain) break;
       terms.back().code = *code++;
       if (terms.back().code == kCodeRandom) terms.back().draw = draws++;

@@ -115,13 +115,24 @@ float Walker::operand(const Term& term, const Shape& s) const {
   return attribute;
 }
 [[gnu::noinline]] float Walker::evaluateWords(const Shape& s, uint32_t at, uint32_t index) const {
-  return evaluate(words_, s, at, index, words_[at] == kParameterView ? seen(s) : Seen{});
+  return evaluate(words_, s, at, index, words_[at] == kParameterView ? seen(s) : Seen{}, fieldReader());
 }
 [[gnu::noinline]] Seen Walker::seen(const Shape& s) const {
-  if (!options_.view) return seenFromNowhere();
+  const GpgpAxiom& axiom = axioms_[context.axiomNumber(s.axiom)];
+  const float* t = axiom.transform;
+  const Seen seen = options_.view ? seenBy(*options_.view, s, vec4(t[0], t[1], t[2], t[3]),
+                                           vec4(t[4], t[5], t[6], t[7]), vec4(t[8], t[9], t[10], t[11]))
+                                  : seenFromNowhere();
+  return hiddenFrom(seen, axiom.hidden);
+}
+float Walker::read(const Shape& s, uint32_t field, float x, float z) const {
   const float* t = axioms_[context.axiomNumber(s.axiom)].transform;
-  return seenBy(*options_.view, s, vec4(t[0], t[1], t[2], t[3]), vec4(t[4], t[5], t[6], t[7]),
-                vec4(t[8], t[9], t[10], t[11]));
+  const vec3 point = framePoint(s, vec3(x, 0, z));
+  const FieldPlace at =
+      placeInField(options_.fields->grids[field], worldCoordinate(point, vec4(t[0], t[1], t[2], t[3])),
+                   worldCoordinate(point, vec4(t[8], t[9], t[10], t[11])));
+  const float* value = options_.fields->values[field] + at.near;
+  return fieldBetween(at, value[0], value[at.right], value[at.far], value[at.far + at.right]);
 }
 vec2 Walker::angle(const Step& step, const Shape& s, uint32_t i) const {
   return step.variable >> i & 1 ? sineCosineDegrees(value(step, s, i)) : step.angles[i];
@@ -175,7 +186,7 @@ case kOp##name: call; break;
     case kOpIfSizeLess: way = component(s.size, step.argument) < value(step, s, 0) ? 0 : 1; break;
     case kOpRandomRule:
       s.node = step.node;
-      way = chooseEdge(words_, s, kOpRandomRule, step.sees ? seen(s) : Seen{});
+      way = chooseEdge(words_, s, kOpRandomRule, step.sees ? seen(s) : Seen{}, fieldReader());
       break;
     case kChoose: {
       const float chance = value(step, s, 0), x = multiply(subtract(chance, floor(chance)), step.total);

@@ -2,6 +2,7 @@
 #pragma once
 #include "spawn/evaluator/context.h"
 #include "spawn/evaluator/program.h"
+#include "spawn/schedule/fields.h"
 #include "spawn/schedule/vertices.h"
 
 #include <gpgp/spawn.h>
@@ -53,7 +54,8 @@ struct WalkOptions {
   bool keeps = true; ///< false: only count
   const Filter* filter = nullptr;
   const VertexLayout* vertices = nullptr;
-  const shader::View* view = nullptr; ///< of the camera; null: there is none
+  const shader::View* view = nullptr;  ///< of the camera; null: there is none
+  const BoundFields* fields = nullptr; ///< in host memory; null: the grammar reads none
 };
 
 /// A shape before the operator that step says; where that multiplies it, what it makes of it.
@@ -69,7 +71,7 @@ struct Frame {
 };
 
 /// Depth first with a stack of shapes whose children are made one at a time, each when the one before it is done.
-class Walker {
+class Walker final : shader::FieldReader {
 public:
   /// buckets: counts terminals by bucket; may be null. What is named must outlive the walker.
   Walker(const uint32_t* words, const Program& program, std::span<const GpgpAxiom> axioms,
@@ -94,6 +96,8 @@ private:
   float expression(const shader::Shape& s, const Step& step, uint32_t terms, uint32_t index) const;
   float operand(const Term& term, const shader::Shape& s) const;
   shader::Seen seen(const shader::Shape& s) const;
+  float read(const shader::Shape& s, uint32_t field, float x, float z) const override;
+  const shader::FieldReader* fieldReader() const { return options_.fields ? this : nullptr; }
   float evaluateWords(const shader::Shape& s, uint32_t at, uint32_t index) const;
   shader::vec2 angle(const Step& step, const shader::Shape& s, uint32_t i) const;
   shader::vec3 values(const Step& step, const shader::Shape& s) const;

@@ -99,6 +99,9 @@ struct OutputVertex {
 /// Appends triangles, counter-clockwise seen from outside, holes cut out. T-joints are not closed.
 Status triangulate(MeshPool& pool, const Form& form, std::vector<OutputVertex>& vertices,
                    std::vector<uint32_t>& indices);
+/// Normals of one shape become the means of those of the faces at a place that meet at an angle below this one; 180 and
+/// above: of all.
+void softenNormals(std::span<OutputVertex> vertices, float degrees);
 
 // ---------------------------------------------------------------- components
 
@@ -230,6 +233,14 @@ Status slice(MeshPool& pool, const Form& form, uint32_t axis, float from, float 
 Status sliceUv(MeshPool& pool, const Form& form, uint32_t set, uint32_t axis, float from, float to, Form& piece);
 /// The part in front of a plane: dot(normal, p) >= offset, in the frame. CGA's trim. Scope as it was.
 Status trim(MeshPool& pool, Form& form, vec3 normal, float offset, bool close);
+/// A plane between two faces, of which one is in front: dot(normal, p) >= offset, in the frame.
+struct TrimPlane {
+  vec3 normal{0, 1, 0};
+  float offset = 0.0f;
+  vec3 along{1, 0, 0}; ///< the direction of the edge between them
+};
+/// For each face the planes to those that it shares an edge with.
+std::vector<std::vector<TrimPlane>> trimPlanes(MeshPool& pool, const Form& form);
 
 /// How far along an axis of the scope, metres from its origin, the faces have an area below: one for each of the areas,
 /// square metres, ascending. Of faces at right angles to the axis all or nothing is below.
@@ -263,6 +274,16 @@ Status setback(MeshPool& pool, const Form& form, std::span<const float> distance
 /// shapeL (front, left), shapeU (and right), shapeO (and back): strips as one form, of few faces, and the rest.
 Status shapeWings(MeshPool& pool, const Form& form, float front, float right, float back, float left, Form& shape,
                   Form& remainder);
+/// From a place along the perimeter to a later one, metres; 0 and less of depth gives nothing.
+struct PerimeterPart {
+  float from, to, depth;
+};
+/// Sets parts of a face's perimeter back, each by its depth. chain: the components FaceEdges of the face that the
+/// perimeter consists of, one behind the other; places beyond its end begin again. pieces: one for each part, mesh 0
+/// where it has no area. The deeper of two that overlap has the overlap, of equal ones the earlier. remainder: what of
+/// the face is left. All keep the form's axes, and are tight; coordinates go.
+Status setbackPerimeter(MeshPool& pool, const Form& form, uint32_t face, std::span<const uint32_t> chain,
+                        std::span<const PerimeterPart> parts, std::vector<Form>& pieces, Form& remainder);
 enum class OffsetPart { All, Inside, Border };
 /// Each face's outline moved outwards (distance above 0) or inwards. Inside: the new polygon; Border: what is between;
 /// All: both. Corners are mitred. A face that vanishes gives no Inside.
@@ -289,7 +310,14 @@ struct RoofOptions {
 /// scope is tight. Edges are tagged. Overhangs are sheets beyond the solid, at the same slope.
 Status roof(MeshPool& pool, Form& form, const RoofOptions& options);
 
+/// A roof of two planes over each face, whose ridge runs along x of the scope, over the middle. The outline may be
+/// concave; holes are kGeometryBadArgument. Tags and scope as roof().
+Status ridgeRoof(MeshPool& pool, Form& form, bool byHeight, float value);
+
 // ---------------------------------------------------------------- changes of the whole
+
+/// Its faces projected along y of the scope into the plane y = 0, and united.
+Status footprint(MeshPool& pool, Form& form);
 
 enum AxisBits : uint32_t { AxisX = 1, AxisY = 2, AxisZ = 4 };
 /// Mirrors at the scope's middle, along axes (AxisBits). Faces still face outwards.

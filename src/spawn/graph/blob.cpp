@@ -10,7 +10,7 @@ using namespace shader;
 
 /// Words of each section, from counts of entries.
 constexpr uint32_t kEntryWords[kSectionCount] = {
-    kNodeSize, kEdgeSize, kParameterSize, 1, kPolygonSize, 2, kTerminalSize, kRuleSize, 1, 1, kQuadSize, kAxiomSize};
+    kNodeSize, kEdgeSize, kParameterSize, 1, kPolygonSize, 2, kTerminalSize, kRuleSize, 1, 1, kQuadSize, kAxiomSize, 1};
 
 uint32_t bitsOf(float v) {
   uint32_t bits;
@@ -46,7 +46,8 @@ std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resour
                                           static_cast<uint32_t>((graph.names.size() + 3) / 4),
                                           static_cast<uint32_t>(graph.divisions.size()),
                                           static_cast<uint32_t>(graph.quads.size() / kQuadSize),
-                                          static_cast<uint32_t>(graph.axioms.size())};
+                                          static_cast<uint32_t>(graph.axioms.size()),
+                                          static_cast<uint32_t>(graph.fields.size())};
   std::pmr::vector<uint32_t> words(kHeaderSize, 0u, memory);
   uint32_t offsets[kSectionCount];
   uint32_t offset = kHeaderSize;
@@ -85,6 +86,7 @@ std::pmr::vector<uint32_t> serialize(const Graph& graph, std::pmr::memory_resour
   words.insert(words.end(), graph.divisions.begin(), graph.divisions.end());
   words.insert(words.end(), graph.quads.begin(), graph.quads.end());
   for (const Axiom& a : graph.axioms) words.insert(words.end(), {a.name, nodeAt(a.node), a.shape | a.polygon << 8});
+  words.insert(words.end(), graph.fields.begin(), graph.fields.end());
   if (!graph.names.empty()) std::memcpy(words.data() + offsets[kSectionNames], graph.names.data(), graph.names.size());
   words[kHeaderChecksum] = checksum(std::span(words).subspan(kHeaderChecked));
   return words;
@@ -173,6 +175,7 @@ Result<Graph> load(std::span<const std::byte> bytes, std::pmr::memory_resource* 
     const uint32_t* w = entry(kSectionAxioms, i);
     graph.axioms.push_back({w[0], nodeIndex(w[1]), w[2] & 0xffu, w[2] >> 8});
   }
+  graph.fields.assign(entry(kSectionFields, 0), entry(kSectionFields, counts[kSectionFields]));
   graph.names.resize(size_t(counts[kSectionNames]) * 4);
   if (!graph.names.empty()) std::memcpy(graph.names.data(), entry(kSectionNames, 0), graph.names.size());
   if (auto ok = validate(graph); !ok) return ok.error();

@@ -41,6 +41,13 @@ std::string programText(const Graph& graph, uint32_t at) {
       stack.push_back(numberText(std::bit_cast<float>(graph.code[at++])));
     } else if (code >= kCodeAttributes) {
       stack.push_back(attributeText(code));
+    } else if (isField(code)) {
+      isLeaf = false;
+      const std::string z = stack.back();
+      stack.pop_back();
+      std::string text(GPGP_FIELD_SPELLING "(");
+      text.append(graph.nameAt(graph.fields[code - kCodeField])).append(",").append(stack.back()).append(",");
+      stack.back() = std::move(text.append(z).append(")"));
     } else {
       isLeaf = false;
       const std::string right = stack.back();

@@ -8,6 +8,7 @@
 
 #include <memory_resource>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gpgp::spawn {
@@ -71,7 +72,8 @@ struct Axiom {
 struct Graph {
   explicit Graph(std::pmr::memory_resource* memory)
       : nodes(memory), edges(memory), parameters(memory), code(memory), polygons(memory), vertices(memory),
-        quads(memory), terminals(memory), rules(memory), axioms(memory), names(memory), divisions(memory) {}
+        quads(memory), terminals(memory), rules(memory), axioms(memory), names(memory), fields(memory),
+        divisions(memory) {}
 
   std::pmr::vector<Node> nodes;
   std::pmr::vector<Edge> edges;
@@ -85,6 +87,7 @@ struct Graph {
   std::pmr::vector<Rule> rules;
   std::pmr::vector<Axiom> axioms;       ///< the first is the default
   std::pmr::vector<char> names;         ///< each ends in 0
+  std::pmr::vector<uint32_t> fields;    ///< of the world, by their numbers: their names; at most kMaxFields
   std::pmr::vector<uint32_t> divisions; ///< of SubDivs with constant parts, as in the baked form; from analyse()
   uint32_t buckets = 0;                 ///< terminal lines
   /// Of derivation; 0 without Collider and IfCollides, kNoPhases where they cannot run in any order. From analyse().
@@ -128,6 +131,17 @@ void analyse(Graph& graph);
 /// Every index, enum, count and program. What passes can be derived without further checks and without end only where
 /// the graph has a cycle.
 core::Result<void> validate(const Graph& graph);
+
+/// Whether a code reads a field, and is not one of kBinaries.
+constexpr bool isField(uint32_t code) { return code >= shader::kCodeField && code < shader::kCodeAttributes; }
+static_assert(shader::kCodeField + shader::kMaxFields == shader::kCodeAttributes);
+/// The number of a field, which is added if there is room for it; kNoField where there is none.
+uint32_t fieldNamed(Graph& graph, std::string_view name);
+constexpr uint32_t kNoField = UINT32_MAX;
+constexpr const char* kTooManyFields = "a grammar reads at most 8 fields, those of linked grammars together";
+static_assert(shader::kMaxFields == 8);
+/// The first rule whose operators read a field; null where only another operator does.
+const char* ruleThatReads(const Graph& graph, uint32_t field);
 
 /// How many random numbers a parameter draws.
 uint32_t drawsOf(const Graph& graph, const Parameter& parameter);

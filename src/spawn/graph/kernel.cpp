@@ -9,7 +9,7 @@ namespace {
 using core::makeError;
 
 constexpr uint32_t kKernelMagic = 0x6b677067u; // "gpgk"
-constexpr uint32_t kKernelVersion = 15;
+constexpr uint32_t kKernelVersion = 17;
 constexpr uint32_t kMostPlaces = 4096; ///< of a stack with queues: their list lies in shared memory
 constexpr uint32_t kSpirvMagic = 0x07230203u;
 /// Words before the code: magic, version, words of everything, checksum of what follows it, graph, info.

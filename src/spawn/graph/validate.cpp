@@ -1,6 +1,8 @@
 // Checks of an operator graph, so that the interpreter needs none.
 #include "spawn/graph/graph.h"
 
+#include <cstring>
+
 namespace gpgp::spawn {
 namespace {
 using core::makeError;
@@ -53,7 +55,8 @@ Result<void> checkCode(const Graph& graph, std::pmr::vector<uint8_t>& starts) {
       } else if (code >= kCodeAttributes && code < kCodeCount) {
         if (code >= kCodeView) starts[start] = kParameterView;
         ++depth;
-      } else if (code >= kCodeAdd && code <= kCodeRandom) { // kBinaries
+      } else if ((code >= kCodeAdd && code <= kCodeRandom) || // kBinaries
+                 (isField(code) && code - kCodeField < graph.fields.size())) {
         if (depth < 2) return makeError(GPGP_ERROR_INVALID_DATA, "program %zu takes from an empty stack", start);
         --depth;
       } else {
@@ -187,6 +190,14 @@ Result<void> validate(const Graph& graph) {
   for (const Terminal& terminal : graph.terminals)
     if (!nameEnds(graph, terminal.name) || terminal.bucket >= graph.buckets || terminal.kind > 1)
       return makeError(GPGP_ERROR_INVALID_DATA, "a terminal has a bad name, kind or bucket");
+  if (graph.fields.size() > kMaxFields)
+    return makeError(GPGP_ERROR_INVALID_DATA, "%zu fields; at most %u", graph.fields.size(), kMaxFields);
+  for (size_t i = 0; i < graph.fields.size(); ++i) {
+    if (!nameEnds(graph, graph.fields[i])) return makeError(GPGP_ERROR_INVALID_DATA, "field %zu has a bad name", i);
+    for (size_t other = 0; other < i; ++other)
+      if (std::strcmp(graph.nameAt(graph.fields[i]), graph.nameAt(graph.fields[other])) == 0)
+        return makeError(GPGP_ERROR_INVALID_DATA, "fields %zu and %zu have the same name", other, i);
+  }
   for (const Rule& rule : graph.rules)
     if (!nameEnds(graph, rule.name) || !isTarget(rule.node) || rule.axiom >= graph.axioms.size())
       return makeError(GPGP_ERROR_INVALID_DATA, "a rule has a bad name, node or axiom");

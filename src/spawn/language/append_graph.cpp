@@ -11,25 +11,31 @@ using namespace shader;
 
 template <class List> uint32_t sizeOf(const List& list) { return static_cast<uint32_t>(list.size()); }
 
-/// Names in their order, which is that of adding them: new offsets by old ones, and whether they are tags.
-using Names = std::map<std::pair<uint32_t, bool>, uint32_t>;
+/// Names in their order, which is that of adding them: new offsets by old ones, and by what they name. Of a field the
+/// number.
+enum class Named { other, tag, field };
+using Names = std::map<std::pair<uint32_t, Named>, uint32_t>;
 
-Names appendNames(const Graph& part, const std::string& name, Graph& graph, Tags& tags) {
+Names appendNames(const Graph& part, const std::string& name, Graph& graph, Tags& tags, Diagnostics& diagnostics) {
   Names names;
-  for (const Terminal& t : part.terminals) names[{t.name, false}];
-  for (const Rule& r : part.rules) names[{r.name, false}];
-  for (size_t i = name.empty() ? 0 : 1; i < part.axioms.size(); ++i) names[{part.axioms[i].name, false}];
+  for (const Terminal& t : part.terminals) names[{t.name, Named::other}];
+  for (const Rule& r : part.rules) names[{r.name, Named::other}];
+  for (size_t i = name.empty() ? 0 : 1; i < part.axioms.size(); ++i) names[{part.axioms[i].name, Named::other}];
   for (const Node& n : part.nodes)
-    if (isContext(n.op) && (n.argument & kTagName)) names[{n.argument & ~kTagName, true}];
-  for (auto& [old, offset] : names) {
+    if (isContext(n.op) && (n.argument & kTagName)) names[{n.argument & ~kTagName, Named::tag}];
+  for (const uint32_t field : part.fields) names[{field, Named::field}];
+  for (auto& [old, added] : names) {
     const std::string text = part.nameAt(old.first);
-    if (!old.second) {
-      offset = addName(graph, name.empty() ? text : name + "." + text);
-      continue;
+    if (old.second == Named::other) {
+      added = addName(graph, name.empty() ? text : name + "." + text);
+    } else if (old.second == Named::field) {
+      added = fieldNamed(graph, text);
+      if (added == kNoField) diagnostics.error({}, kTooManyFields);
+    } else {
+      const auto [tag, isNew] = tags.try_emplace(text);
+      if (isNew) tag->second = kTagName | addName(graph, text);
+      added = tag->second;
     }
-    const auto [tag, isNew] = tags.try_emplace(text);
-    if (isNew) tag->second = kTagName | addName(graph, text);
-    offset = tag->second;
   }
   return names;
 }
@@ -43,6 +49,15 @@ void appendPolygons(const Graph& part, Graph& graph) {
     graph.vertices.insert(graph.vertices.end(), vertices, vertices + 2 * std::ptrdiff_t(p.vertexCount));
     const auto quads = part.quads.begin() + kQuadSize * std::ptrdiff_t(p.firstQuad);
     graph.quads.insert(graph.quads.end(), quads, quads + kQuadSize * std::ptrdiff_t(p.quadCount));
+  }
+}
+
+void appendCode(const Graph& part, const Names& names, Graph& graph) {
+  for (size_t at = 0; at < part.code.size(); ++at) {
+    uint32_t code = part.code[at];
+    if (isField(code)) code = kCodeField + names.at({part.fields[code - kCodeField], Named::field});
+    graph.code.push_back(code);
+    if (code == kCodeNumber) graph.code.push_back(part.code[++at]);
   }
 }
 } // namespace
@@ -63,15 +78,15 @@ uint32_t addName(Graph& graph, std::string_view name) {
   return at;
 }
 
-void appendGraph(const Graph& part, const std::string& name, Graph& graph, Tags& tags) {
+void appendGraph(const Graph& part, const std::string& name, Graph& graph, Tags& tags, Diagnostics& diagnostics) {
   const uint32_t firstNode = sizeOf(graph.nodes), firstEdge = sizeOf(graph.edges),
                  firstParameter = sizeOf(graph.parameters), firstCode = sizeOf(graph.code),
                  firstPolygon = sizeOf(graph.polygons) - kRegularPolygons, firstTerminal = sizeOf(graph.terminals),
                  firstRule = sizeOf(graph.rules), firstAxiom = sizeOf(graph.axioms), firstBucket = graph.buckets;
   const auto node = [&](uint32_t n) { return n == kNoNode ? kNoNode : firstNode + n; };
   const auto polygon = [&](uint32_t p) { return p < kRegularPolygons ? p : firstPolygon + p; };
-  const Names names = appendNames(part, name, graph, tags);
-  const auto named = [&](uint32_t offset) { return names.at({offset, false}); };
+  const Names names = appendNames(part, name, graph, tags, diagnostics);
+  const auto named = [&](uint32_t offset) { return names.at({offset, Named::other}); };
 
   appendPolygons(part, graph);
   for (Node n : part.nodes) {
@@ -80,7 +95,7 @@ void appendGraph(const Graph& part, const std::string& name, Graph& graph, Tags&
       n.firstEdge += firstEdge;
     }
     if (n.op == kOpSetGeometry) n.argument2 = polygon(n.argument2);
-    if (isContext(n.op) && (n.argument & kTagName)) n.argument = names.at({n.argument & ~kTagName, true});
+    if (isContext(n.op) && (n.argument & kTagName)) n.argument = names.at({n.argument & ~kTagName, Named::tag});
     if (n.op == kOpTerminal) {
       n.argument += firstTerminal;
       n.argument2 += firstBucket;
@@ -96,7 +111,7 @@ void appendGraph(const Graph& part, const std::string& name, Graph& graph, Tags&
     if (hasProgram(p.kind)) p.value += firstCode;
     graph.parameters.push_back(p);
   }
-  graph.code.insert(graph.code.end(), part.code.begin(), part.code.end());
+  appendCode(part, names, graph);
   for (const Terminal& t : part.terminals)
     graph.terminals.push_back({named(t.name), t.kind, t.index, firstBucket + t.bucket});
   graph.buckets += part.buckets;

@@ -566,7 +566,7 @@ Graph buildGraph(std::span<const GrammarPart> parts, std::pmr::memory_resource* 
   for (const GrammarPart& part : parts) {
     const uint32_t number = static_cast<uint32_t>(&part - parts.data());
     if (part.baked)
-      appendGraph(*part.baked, part.name, graph, tags);
+      appendGraph(*part.baked, part.name, graph, tags, *part.diagnostics);
     else
       builders.emplace_back(part, graph, places, tags, number).run();
     if (part.places)

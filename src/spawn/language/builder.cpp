@@ -39,9 +39,9 @@ struct GpgpGrammarBuilder_T {
     std::string name;
     GpgpGrammarValue value{};
   };
-  /// A variable or tag by name, or two values.
+  /// A variable or tag by name, or two values, or a field by its name at two of them.
   struct Value {
-    std::string name;
+    std::string name, field;
     GpgpExpressionKind kind = 0;
     GpgpGrammarValue left{}, right{};
     uint32_t size = 1; // values in it
@@ -103,6 +103,18 @@ struct GpgpGrammarBuilder_T {
   bool check(bool good, const char* function, const std::string& problem) {
     if (!good) problems.push_back(std::string(function) + ": " + problem);
     return good;
+  }
+  /// Adds a value of two others.
+  GpgpGrammarValue join(const char* function, Value made) {
+    for (const GpgpGrammarValue value : {made.left, made.right})
+      if (!check(sizeOf(value) != 0, function, "there is no value " + std::to_string(value.id) + " in this builder"))
+        return GpgpGrammarValue GPGP_GRAMMAR_NUMBER(0);
+    made.size = 1 + sizeOf(made.left) + sizeOf(made.right);
+    if (!check(made.size <= kMaxExpressionValues, function,
+               "the expression has more than 1024 values; expected a shorter one"))
+      return GpgpGrammarValue GPGP_GRAMMAR_NUMBER(0);
+    values.push_back(std::move(made));
+    return own();
   }
   static std::string problemOfName(const char* name) {
     if (!name) return "the name is NULL";
@@ -252,8 +264,13 @@ private:
     Expression result;
     result.place = at;
     result.kind = ExpressionKind::pair;
+    if (!own.field.empty()) {
+      result.kind = ExpressionKind::call;
+      result.name = GPGP_FIELD_SPELLING;
+      result.arguments.push_back(named(ExpressionKind::name, own.field.c_str(), at));
+    }
     for (const Binary& binary : kBinaries) {
-      if (binary.kind != own.kind) continue;
+      if (binary.kind != own.kind || !own.field.empty()) continue;
       result.kind = binary.precedence ? ExpressionKind::binary : ExpressionKind::call;
       if (binary.precedence)
         result.op = binary.code;
@@ -400,25 +417,23 @@ GpgpGrammarValue GPGP_CALL gpgpAddTag(GpgpGrammarBuilder builder, const char* na
   });
 }
 
+GpgpGrammarValue GPGP_CALL gpgpAddField(GpgpGrammarBuilder builder, const char* name, GpgpGrammarValue x,
+                                        GpgpGrammarValue z) {
+  return guarded(builder, GpgpGrammarValue{}, [&]() -> GpgpGrammarValue {
+    if (!builder->checkName(name, "gpgpAddField") ||
+        !builder->check(!isNumber(name), "gpgpAddField", quoted(name) + " is a number; expected a name"))
+      return GpgpGrammarValue GPGP_GRAMMAR_NUMBER(0);
+    return builder->join("gpgpAddField", {.field = name, .left = x, .right = z});
+  });
+}
+
 GpgpGrammarValue GPGP_CALL gpgpAddExpression(GpgpGrammarBuilder builder, GpgpExpressionKind kind, GpgpGrammarValue left,
                                              GpgpGrammarValue right) {
   return guarded(builder, GpgpGrammarValue{}, [&]() -> GpgpGrammarValue {
-    for (const GpgpGrammarValue value : {left, right})
-      if (!builder->check(builder->sizeOf(value) != 0, "gpgpAddExpression",
-                          "there is no value " + std::to_string(value.id) + " in this builder"))
-        return GpgpGrammarValue GPGP_GRAMMAR_NUMBER(0);
-    const uint32_t size = 1 + builder->sizeOf(left) + builder->sizeOf(right);
     if (!builder->check(kind <= GPGP_EXPRESSION_NOISE, "gpgpAddExpression",
-                        "there is no kind of expression " + std::to_string(kind)) ||
-        !builder->check(size <= kMaxExpressionValues, "gpgpAddExpression",
-                        "the expression has more than 1024 values; expected a shorter one"))
+                        "there is no kind of expression " + std::to_string(kind)))
       return GpgpGrammarValue GPGP_GRAMMAR_NUMBER(0);
-    auto& own = builder->values.emplace_back();
-    own.kind = kind;
-    own.left = left;
-    own.right = right;
-    own.size = size;
-    return builder->own();
+    return builder->join("gpgpAddExpression", {.kind = kind, .left = left, .right = right});
   });
 }
 

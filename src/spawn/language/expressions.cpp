@@ -88,6 +88,10 @@ ExpressionCompiler::Code ExpressionCompiler::join(Place place, uint32_t op, Code
     return number(0);
   }
   if (left.isConstant && right.isConstant && op != kCodeRandom) return number(fold(place, op, left.value, right.value));
+  return append(place, op, std::move(left), right);
+}
+
+ExpressionCompiler::Code ExpressionCompiler::append(Place place, uint32_t op, Code left, const Code& right) {
   Code result;
   result.words = std::move(left.words);
   result.words.insert(result.words.end(), right.words.begin(), right.words.end());
@@ -102,6 +106,25 @@ ExpressionCompiler::Code ExpressionCompiler::join(Place place, uint32_t op, Code
   return result;
 }
 
+/// Field(name) or Field(name, x, z)
+ExpressionCompiler::Code ExpressionCompiler::field(const Expression& e) {
+  const size_t count = e.arguments.size();
+  if ((count != 1 && count != 3) || e.arguments[0].kind != ExpressionKind::name) {
+    const bool isNamed = count && e.arguments[0].kind == ExpressionKind::name;
+    if (isWhole(e))
+      diagnostics_.error(e.place, e.name + " takes the name of a field, or that, x and z; found " +
+                                      (count && !isNamed ? "no name" : plural(count, "argument")));
+    for (size_t i = isNamed ? 1 : 0; i < count; ++i) compile(e.arguments[i]);
+    return number(0);
+  }
+  Code x = count == 3 ? compile(e.arguments[1]) : number(0);
+  const Code z = count == 3 ? compile(e.arguments[2]) : number(0);
+  const uint32_t field = fieldNamed(graph_, e.arguments[0].name);
+  if (field != kNoField) return append(e.place, kCodeField + field, std::move(x), z);
+  diagnostics_.error(e.place, kTooManyFields);
+  return number(0);
+}
+
 ExpressionCompiler::Code ExpressionCompiler::call(const Expression& e) {
   const auto wants = [&](size_t count) {
     if (e.arguments.size() == count) return true;
@@ -112,6 +135,7 @@ ExpressionCompiler::Code ExpressionCompiler::call(const Expression& e) {
     return false;
   };
   if (e.name == "Exp") return wants(1) ? compile(e.arguments[0]) : number(0);
+  if (e.name == GPGP_FIELD_SPELLING) return field(e);
   for (const Binary& binary : kBinaries) {
     if (binary.precedence || e.name != binary.spelling) continue;
     if (!wants(2)) return number(0);

@@ -37,7 +37,10 @@ private:
   Code call(const Expression& expression);
   Code number(float value) const;
   Code attribute(const Expression& expression, uint32_t code, uint32_t axes);
+  Code field(const Expression& expression);
   Code join(Place place, uint32_t op, Code left, Code right);
+  /// left right op, which takes both.
+  Code append(Place place, uint32_t op, Code left, const Code& right);
   /// left op right, of numbers. Reports what is none.
   float fold(Place place, uint32_t op, float left, float right);
   std::string suggestionFor(const std::string& name, bool isCall) const;

@@ -20,6 +20,7 @@ std::string printGraph(const Graph& graph) {
   }
   for (const Terminal& t : graph.terminals)
     out << "terminal " << graph.nameAt(t.name) << " (" << t.kind << ", " << t.index << ") bucket " << t.bucket << '\n';
+  for (const uint32_t field : graph.fields) out << "field " << graph.nameAt(field) << '\n';
   const size_t own = graph.polygons.size() - graph.pieces; // SubDiv makes the others anew
   for (uint32_t i = kRegularPolygons; i < own; i += 2) {
     out << "polygon " << i << " {";

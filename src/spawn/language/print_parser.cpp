@@ -142,8 +142,8 @@ private:
   // ---------------------------------------------------------------- statements
 
   bool atStatement() const {
-    const bool keyword =
-        isName("axiom") || isName("terminal") || isName("polygon") || isName("rule") || isName("group");
+    const bool keyword = isName("axiom") || isName("terminal") || isName("field") || isName("polygon") ||
+                         isName("rule") || isName("group");
     return keyword || (is(TokenKind::number) && tokens_[at_ + 1].kind == TokenKind::name &&
                        tokens_[at_].place.line != (at_ ? tokens_[at_ - 1].place.line : 0));
   }
@@ -153,11 +153,12 @@ private:
     const Token& keyword = now();
     if (isName("axiom")) return ++at_, axiom(keyword.place);
     if (isName("terminal")) return ++at_, terminal();
+    if (isName("field")) return ++at_, field();
     if (isName("polygon")) return ++at_, polygon();
     if (isName("rule")) return ++at_, rule();
     if (isName("group")) return ++at_, group(keyword.place);
-    fail(keyword,
-         std::string("expected a node's number, axiom, terminal, polygon, rule or group, found ") + describe(keyword));
+    fail(keyword, std::string("expected a node's number, axiom, terminal, field, polygon, rule or group, found ") +
+                      describe(keyword));
   }
 
   uint32_t target() {
@@ -209,6 +210,14 @@ private:
     terminal.bucket = whole("a bucket's number");
     graph_.terminals.back() = terminal;
     graph_.buckets = std::max(graph_.buckets, terminal.bucket + 1);
+  }
+
+  void field() {
+    const Token& token = name("a field's name");
+    const size_t before = graph_.fields.size();
+    if (fieldNamed(graph_, token.text) != before)
+      fail(token, before == kMaxFields ? std::string(kTooManyFields)
+                                       : std::string("field ") + describe(token) + " is defined twice");
   }
 
   void polygon() {
@@ -383,6 +392,16 @@ private:
       Value inner = value(depth + 1);
       expect(TokenKind::close, "')'");
       return {std::move(inner.words), std::max(inner.kind, kParameterProgram)};
+    }
+    if (word.text == GPGP_FIELD_SPELLING) {
+      const Token& field = name("a field's name");
+      const auto known = std::find_if(graph_.fields.begin(), graph_.fields.end(),
+                                      [&](uint32_t offset) { return graph_.nameAt(offset) == field.text; });
+      if (known == graph_.fields.end()) fail(field, std::string("there is no field ") + describe(field));
+      expect(TokenKind::comma, "','");
+      Value x = value(depth + 1);
+      expect(TokenKind::comma, "','");
+      return close(std::move(x), kCodeField + static_cast<uint32_t>(known - graph_.fields.begin()), value(depth + 1));
     }
     for (const Binary& binary : kBinaries) {
       if (binary.precedence || word.text != binary.spelling) continue;

@@ -45,6 +45,7 @@ template <class Call> void forFunctionNames(const Call& call) {
   call("Exp");
   for (const Binary& binary : kBinaries)
     if (!binary.precedence) call(binary.spelling);
+  call(GPGP_FIELD_SPELLING);
   for (const Attribute& attribute : kAttributes) call(attribute.name);
 }
 

@@ -15,41 +15,6 @@
 
 namespace gpgp::spawn::lsystem {
 
-uint32_t turtleOf(std::string_view name) {
-  using namespace shader;
-  if (name == "@Gs") return kTurtleCylinder;
-  if (name == "@Gc") return kTurtleSection;
-  if (name == "@Ge") return kTurtleCylinderEnd;
-  if (name.size() == 2 && name[0] == '~') return kTurtleAsset;
-  if (name.size() != 1) return kTurtleNone;
-  switch (name[0]) {
-  case 'F': return kTurtleDraw;
-  case 'f': return kTurtleMove;
-  case 'G': return kTurtleDrawOnly;
-  case '+': return kTurtleLeft;
-  case '-': return kTurtleRight;
-  case '&': return kTurtleDown;
-  case '^': return kTurtleUp;
-  case '\\': return kTurtleRollLeft;
-  case '/': return kTurtleRollRight;
-  case '|': return kTurtleAround;
-  case '[': return kTurtleOpen;
-  case ']': return kTurtleClose;
-  case '!': return kTurtleWidth;
-  case '\'': return kTurtleColour;
-  case '{': return kTurtlePolygon;
-  case '.': return kTurtleCorner;
-  case '}': return kTurtlePolygonEnd;
-  case '%': return kTurtleCut;
-  case '$': return kTurtleUpright;
-  case 'T': return kTurtleTropism;
-  case 'J':
-  case 'K':
-  case 'M': return kTurtleAsset;
-  default: return kTurtleNone;
-  }
-}
-
 namespace {
 using namespace shader;
 
@@ -72,6 +37,7 @@ public:
 
   std::optional<std::vector<uint32_t>> run() {
     takeConstants();
+    takeSteps();
     for (const System& system : file_.systems)
       for (const Production& p : system.productions) predecessors_[system.name].insert(p.predecessor.name);
     for (const auto& [system, names] : predecessors_) rewritten_.insert(names.begin(), names.end());
@@ -106,10 +72,15 @@ private:
     if (e.kind == Expression::Kind::name) {
       if (const auto found = scope.names.find(e.name); found != scope.names.end())
         return found->second.given ? constantOf(*found->second.given, *found->second.around) : std::nullopt;
+      if (rows_.contains(e.name)) return std::nullopt;
       const auto constant = constants_.find(e.name);
       return constant != constants_.end() ? std::optional(constant->second) : std::nullopt;
     }
     if (e.code == kLsysRandom || e.code == kLsysNormal) return std::nullopt;
+    if (e.code == kLsysSelect) {
+      const auto condition = constantOf(e.operands[0], scope);
+      return condition ? constantOf(e.operands[*condition != 0.0f ? 1 : 2], scope) : std::nullopt;
+    }
     std::vector<float> values;
     for (const Expression& operand : e.operands) {
       const auto value = constantOf(operand, scope);
@@ -117,8 +88,7 @@ private:
       values.push_back(*value);
     }
     if (values.size() == 1) return lsysUnary(e.code, values[0]);
-    if (values.size() == 2) return lsysBinary(e.code, values[0], values[1]);
-    return values[0] != 0.0f ? values[1] : values[2];
+    return lsysBinary(e.code, values[0], values[1]);
   }
 
   /// A number that settings need; reports why there is none.
@@ -161,7 +131,13 @@ private:
     return value;
   }
   uint32_t wholeSetting(std::string_view name, const std::optional<Expression>& given, float fallback, uint32_t most) {
-    const float value = setting(name, given, fallback);
+    float value = setting(name, given, fallback);
+    if (most == kMostRepeats && value > static_cast<float>(most) && value == std::floor(value)) {
+      diagnostics_.warning(given ? given->place : Place{}, std::string(name) + " is repeated at most " +
+                                                               std::to_string(most) + " times, not " +
+                                                               std::to_string(static_cast<uint64_t>(value)));
+      value = static_cast<float>(most);
+    }
     if (value >= 0 && value <= static_cast<float>(most) && value == std::floor(value))
       return static_cast<uint32_t>(value);
     diagnostics_.error(given ? given->place : Place{},
@@ -169,7 +145,8 @@ private:
     return 0;
   }
 
-  void takeSettings() {
+  /// How many steps there are, and the rows of values that code changes from step to step.
+  void takeSteps() {
     const Settings& s = file_.settings;
     bool has[kPhases3] = {};
     for (const System& system : file_.systems)
@@ -183,6 +160,22 @@ private:
         has[kPhaseDecomposition] ? wholeSetting("decomposition", s.decompositions, 1, kMostRepeats) : 0;
     table_.head[kLsysHeadHomomorphisms] =
         has[kPhaseHomomorphism] ? wholeSetting("homomorphism", s.homomorphisms, 1, kMostRepeats) : 0;
+    if (file_.stepped.empty()) return;
+    const uint32_t iterations = table_.head[kLsysHeadIterations], parts = table_.head[kLsysHeadDecompositions];
+    const uint32_t steps = parts + iterations * (1 + parts) + 1; // the last is that of homomorphism
+    table_.code.push_back(steps);
+    for (const Stepped& row : file_.stepped) {
+      rows_[row.name] = static_cast<uint32_t>(rows_.size());
+      for (uint32_t step = 0; step < steps; ++step) {
+        const size_t at = step < parts ? 0 : 1 + (step - parts) / (1 + parts);
+        table_.code.push_back(std::bit_cast<uint32_t>(settle(row.values[std::min(at, row.values.size() - 1)])));
+      }
+    }
+    table_.head[kLsysHeadRows] = static_cast<uint32_t>(rows_.size());
+  }
+
+  void takeSettings() {
+    const Settings& s = file_.settings;
     table_.head[kLsysHeadSeed] = wholeSetting("seed", s.seed, 0, 1u << 24);
     const auto put = [&](uint32_t word, float value) { table_.head[word] = std::bit_cast<uint32_t>(settle(value)); };
     put(kLsysHeadAngle, setting("angle", s.angle, 90));
@@ -259,6 +252,7 @@ private:
     }
     Symbol symbol{full, static_cast<uint32_t>(arity)};
     symbol.turtle = own ? kTurtleNone : turtleOf(name);
+    if (name == "#" && arity) symbol.turtle = kTurtleWidth; // #(w), as !(w)
     const bool instead = (name == "T" || name == "J" || name == "K" || name == "M") && rewritten_.contains(name);
     if (instead) symbol.turtle = kTurtleNone; // then they are letters like any other
     const auto listed = [&](const auto& letters) {
@@ -270,6 +264,9 @@ private:
     if (asset != assets_.end() && !own) {
       symbol.turtle = kTurtleAsset;
       symbol.terminal = terminal(asset->second->name, 1, asset->second->shape);
+    } else if (name == "@O" || name == "@o" || name == "@c") {
+      symbol.terminal = terminal(name == "@O" ? "sphere" : "circle", 1,
+                                 name == "@O" ? uint32_t{GPGP_SHAPE_SPHERE} : uint32_t{GPGP_SHAPE_OCTAGON});
     } else if (symbol.turtle == kTurtleAsset) {
       symbol.terminal = terminal(name[0] == '~' ? name.substr(1) : name, 1, GPGP_SHAPE_QUAD);
     } else if (symbol.turtle == kTurtleDraw || symbol.turtle == kTurtleDrawOnly) {
@@ -298,7 +295,10 @@ private:
     }
     if (e.kind == Expression::Kind::name) {
       const auto found = scope.names.find(e.name);
-      if (found == scope.names.end()) {
+      const auto row = rows_.find(e.name);
+      if (found == scope.names.end() && row != rows_.end()) {
+        program.insert(program.end(), {kLsysByStep, row->second});
+      } else if (found == scope.names.end()) {
         core::Suggestion suggestion(e.name);
         for (const auto& [name, meaning] : scope.names) suggestion.offer(name);
         for (const auto& [name, value] : constants_) suggestion.offer(name);
@@ -311,9 +311,19 @@ private:
       return;
     }
     if (e.code == kLsysRandom || e.code == kLsysNormal) {
-      program.insert(program.end(), {e.code, drawBase_ + draws_++});
+      if (e.draw & kSharedDraw) { // by all productions of a block
+        program.insert(program.end(), {e.code, 0x10000000u | (e.draw & 0x00ffffffu)});
+        return;
+      }
+      const auto [known, isNew] =
+          e.draw ? sharedDraws_.try_emplace(e.draw, draws_) : std::pair(sharedDraws_.end(), true);
+      const uint32_t draw = isNew ? draws_++ : known->second;
+      program.insert(program.end(), {e.code, drawBase_ + draw});
       return;
     }
+    if (e.code == kLsysSelect)
+      if (const auto condition = constantOf(e.operands[0], scope))
+        return emit(e.operands[*condition != 0.0f ? 1 : 2], scope, program, depth, most);
     for (size_t i = 0; i < e.operands.size(); ++i)
       emit(e.operands[i], scope, program, depth + static_cast<uint32_t>(i), most);
     program.push_back(e.code);
@@ -347,7 +357,11 @@ private:
       if (m.name[0] == '?') {
         const std::string name = m.name.substr(1);
         const System* called = systemNamed(name);
-        if (!called) {
+        if (!called && isQuery(name)) {
+          inert(m, "there are no queries of the environment or the turtle; the parameters of '" + m.name +
+                       "' stay what strings say");
+          place(system, m, scope, production);
+        } else if (!called) {
           core::Suggestion suggestion(name);
           for (const System& other : file_.systems) suggestion.offer(other.name);
           diagnostics_.error(m.place, "there is no sub-system '" + name + "'" + suggestion.text());
@@ -364,17 +378,33 @@ private:
         }
         continue;
       }
-      const uint32_t symbol = intern(m.name, m.arguments.size(), system.name, m.place);
-      table_.symbols[symbol].made = true;
-      uint32_t code = 0;
-      for (const Expression& argument : m.arguments) {
-        const uint32_t at = programOf(argument, scope);
-        if (!code) code = at;
-      }
-      table_.modules.push_back({symbol, code});
-      production[kProductionSuccessor + 1] += 1;
-      production[kProductionParameters] += static_cast<uint32_t>(m.arguments.size());
+      if (m.name.size() > 1 && m.name[0] == '@' && turtleOf(m.name) == kTurtleNone && !assets_.contains(m.name))
+        inert(m, "the turtle command '" + m.name + "' is not supported, and has no effect");
+      if (m.name == "," || (m.name == "#" && m.arguments.empty()))
+        inert(m, "the turtle command '" + m.name + "' is not supported, and has no effect");
+      place(system, m, scope, production);
     }
+  }
+
+  static bool isQuery(std::string_view name) {
+    return name.size() == 1 && std::string_view("PHUELRCTD").find(name[0]) != std::string_view::npos;
+  }
+  void inert(const Module& m, const std::string& text) {
+    if (inert_.insert(m.name).second) diagnostics_.warning(m.place, text);
+  }
+  /// A module of a successor.
+  void place(const System& system, const Module& m, const Scope& scope,
+             std::array<uint32_t, kProductionSize>& production) {
+    const uint32_t symbol = intern(m.name, m.arguments.size(), m.system.empty() ? system.name : m.system, m.place);
+    table_.symbols[symbol].made = true;
+    uint32_t code = 0;
+    for (const Expression& argument : m.arguments) {
+      const uint32_t at = programOf(argument, scope);
+      if (!code) code = at;
+    }
+    table_.modules.push_back({symbol, code});
+    production[kProductionSuccessor + 1] += 1;
+    production[kProductionParameters] += static_cast<uint32_t>(m.arguments.size());
   }
 
   void takeString(const System& system, const ModuleString& string, const Scope& scope,
@@ -384,14 +414,17 @@ private:
       if (m.name == "[") ++depth;
       if (m.name == "{") ++polygons;
       if (m.name == "]" && depth-- == 0) diagnostics_.error(m.place, "']' without a '[' before it in this string");
-      if (m.name == "}" && polygons-- == 0) diagnostics_.error(m.place, "'}' without a '{' before it in this string");
-      if (m.name == "{" && polygons > 1) diagnostics_.error(m.place, "a polygon within a polygon is not supported");
+      if (m.name == "}" && polygons-- == 0 && !file_.isOfModeller)
+        diagnostics_.error(m.place, "'}' without a '{' before it in this string");
+      if (m.name == "{" && polygons > 1 && !file_.isOfModeller)
+        diagnostics_.error(m.place, "a polygon within a polygon is not supported");
       depth = std::max(depth, 0);
       polygons = std::max(polygons, 0);
     }
     const Place end = string.empty() ? Place{} : string.back().place;
     if (depth) diagnostics_.error(end, "a '[' of this string has no ']'; strings are put together whole");
-    if (polygons) diagnostics_.error(end, "a '{' of this string has no '}'; strings are put together whole");
+    if (polygons && !file_.isOfModeller)
+      diagnostics_.error(end, "a '{' of this string has no '}'; strings are put together whole");
     production[kProductionSuccessor] = static_cast<uint32_t>(table_.modules.size());
     append(system, string, scope, 0, production);
     if (production[kProductionSuccessor + 1] > kMostSuccessor)
@@ -431,10 +464,13 @@ private:
         table_.contexts.push_back({m.name == "[" ? kContextOpen : kContextClose, 0});
         continue;
       }
-      if (m.name[0] == '?') diagnostics_.error(m.place, "a context cannot hold a sub-system");
+      if (m.name[0] == '?' && !isQuery(m.name.substr(1)))
+        diagnostics_.error(m.place, "a context cannot hold a sub-system");
       const uint32_t symbol = intern(m.name, m.arguments.size(), system.name, m.place);
       if (table_.symbols[symbol].ignored)
-        diagnostics_.error(m.place, "contexts do not see '" + m.name + "', so this one never holds");
+        file_.isOfModeller
+            ? diagnostics_.warning(m.place, "contexts do not see '" + m.name + "', so this one never holds")
+            : diagnostics_.error(m.place, "contexts do not see '" + m.name + "', so this one never holds");
       table_.contexts.push_back({symbol, variables});
       declare(m, scope, variables);
       contextSymbols_.push_back({symbol, m.place});
@@ -444,8 +480,8 @@ private:
   void takeProduction(const System& system, const Production& p) {
     const std::string& name = p.predecessor.name;
     const uint32_t turtle = turtleOf(name);
-    if (name[0] == '?' || turtle == kTurtleOpen || turtle == kTurtleClose || turtle == kTurtlePolygon ||
-        turtle == kTurtlePolygonEnd)
+    if ((name[0] == '?' && !isQuery(name.substr(1))) || turtle == kTurtleOpen || turtle == kTurtleClose ||
+        turtle == kTurtlePolygon || turtle == kTurtlePolygonEnd)
       return diagnostics_.error(p.predecessor.place, "'" + name + "' cannot be rewritten");
     const bool contextual = (p.left && !p.left->empty()) || (p.right && !p.right->empty());
     if (contextual && p.phase != kPhaseMain)
@@ -466,6 +502,7 @@ private:
       return diagnostics_.error(p.place, "'" + name + "' has too many productions");
     drawBase_ = static_cast<uint32_t>(productions.size()) << 16;
     draws_ = 0;
+    sharedDraws_.clear();
     if (p.condition) production[kProductionCondition] = programOf(*p.condition, scope);
     if (p.probability) production[kProductionProbability] = programOf(*p.probability, scope);
     takeString(system, p.successor, scope, production);
@@ -539,20 +576,23 @@ private:
   Diagnostics& diagnostics_;
   TableContents table_;
   std::map<std::string, float> constants_;
+  std::map<std::string, uint32_t> rows_;                      // of values that change from step to step
   std::map<std::string, std::set<std::string>> predecessors_; // by system
   std::set<std::string> rewritten_;                           // of all
   std::map<std::string, const Asset*> assets_;
   std::map<std::pair<std::string, size_t>, uint32_t> symbolIndex_;
   std::vector<std::pair<uint32_t, Place>> contextSymbols_;
   uint32_t drawBase_ = 0, draws_ = 0;
+  std::map<uint32_t, uint32_t> sharedDraws_; // of the production: numbers that names stand for
+  std::set<std::string> inert_;              // commands that were named as such
   bool hasContexts_ = false;
 };
 
 } // namespace
 
 std::optional<std::vector<uint32_t>> compile(std::string_view text, std::span<const Override> overrides,
-                                             Diagnostics& diagnostics) {
-  const File file = parse(text, diagnostics);
+                                             Diagnostics& diagnostics, const ReadFile& read) {
+  const File file = parse(text, diagnostics, overrides, read);
   return Compiler(file, overrides, diagnostics).run();
 }
 

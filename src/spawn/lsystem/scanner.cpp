@@ -131,6 +131,16 @@ std::string Reader::identifier() {
   return name;
 }
 
+/// ~('leaf', s), the surface by a name in quotes: ends at what is behind the name, a comma where there are values.
+std::string Reader::surfaceInQuotes() {
+  const std::string name = std::string("~") + line_.text[at_ + 2];
+  const size_t close = line_.text.find('\'', at_ + 2);
+  at_ = std::min(close == std::string::npos ? end_ : close + 1, end_);
+  blanks();
+  if (at_ < end_ && line_.text[at_] == ')') ++at_;
+  return name;
+}
+
 std::string Reader::word() {
   blanks();
   std::string text;
@@ -142,7 +152,7 @@ std::optional<Module> Reader::module(bool declares) {
   Module module;
   blanks();
   module.place = place();
-  constexpr std::string_view kSigns = "+-&^\\/|$[]!{}.'%\"";
+  constexpr std::string_view kSigns = "+-&^\\/|$[]!{}.'%\";,#";
   const auto longest = std::find_if(names_.rbegin(), names_.rend(), [&](const std::string& name) {
     return line_.text.compare(at_, name.size(), name) == 0 && at_ + name.size() <= end_;
   });
@@ -154,15 +164,30 @@ std::optional<Module> Reader::module(bool declares) {
   } else if (c == '?') {
     ++at_;
     module.name.assign(1, '?').append(identifier());
-    if (module.name.size() == 1) error("'?' is followed by the name of a sub-system; found " + found());
+    const bool isNumbered = declared_ && at_ < end_ && line_.text[at_] == '('; // ?(2, 1), of a plant modeller
+    if (module.name.size() == 1 && !isNumbered)
+      error("'?' is followed by the name of a sub-system or a query; found " + found());
   } else if (c == '@') {
-    for (const std::string_view name : {"@Gs", "@Gc", "@Ge"})
-      if (module.name.empty() && take(name)) module.name = name;
-    if (module.name.empty()) error("after '@', there are only @Gs, @Gc and @Ge, which make a generalised cylinder");
+    ++at_;
+    module.name = c;
+    if (at_ < end_ && (isName(line_.text[at_]) || line_.text[at_] == '#')) module.name += line_.text[at_++];
+    if (module.name == "@G" || module.name == "@T" || module.name == "@P" || module.name == "@C")
+      if (at_ < end_ && isName(line_.text[at_])) module.name += line_.text[at_++];
+    // Others are named by the compiler, and have no effect.
+    constexpr std::string_view kCylinders = "sceatr";
+    if (module.name.size() == 1 ||
+        (module.name[1] == 'G' &&
+         (module.name.size() < 3 || kCylinders.find(module.name[2]) == std::string_view::npos)))
+      errorAt(module.place,
+              "there is no command '" + module.name +
+                  "'; after '@', there are Gs, Gc and Ge (a generalised cylinder), o, c and O (circles and "
+                  "spheres), and v");
   } else if (c == '~') {
     ++at_;
     if (at_ < end_ && isName(line_.text[at_]))
       module.name = std::string("~") + line_.text[at_++];
+    else if (declared_ && line_.text.compare(at_, 2, "('") == 0 && at_ + 2 < end_ && isName(line_.text[at_ + 2]))
+      module.name = surfaceInQuotes();
     else
       error("'~' is followed by the letter of a surface; found " + found());
   } else if (c != 0 && (isName(c) || kSigns.find(c) != std::string_view::npos)) {
@@ -172,7 +197,8 @@ std::optional<Module> Reader::module(bool declares) {
     error("a module is a letter, a digit, a turtle command or a name of 'modules:'; found " + found());
   }
   if (failed_) return std::nullopt;
-  if (at_ < end_ && line_.text[at_] == '(') {
+  const bool isOpen = module.name.size() == 2 && module.name[0] == '~' && at_ < end_ && line_.text[at_] == ',';
+  if (isOpen || (at_ < end_ && line_.text[at_] == '(')) {
     ++at_;
     do {
       Expression argument;

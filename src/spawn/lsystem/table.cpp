@@ -20,7 +20,8 @@ constexpr uint32_t kEntryWords[kLsysSections] = {
 /// What a program leaves on the stack, and where it ends; 0: it is none.
 class Programs {
 public:
-  Programs(std::span<const uint32_t> words, uint32_t begin, uint32_t end) : words_(words), begin_(begin), end_(end) {}
+  Programs(std::span<const uint32_t> words, uint32_t begin, uint32_t end, uint32_t rows)
+      : words_(words), begin_(begin), end_(end), rows_(rows) {}
 
   /// The word behind a program, or 0 where it is not one that leaves one value.
   uint32_t behind(uint32_t at, uint32_t variables) const {
@@ -31,13 +32,14 @@ public:
       const uint32_t code = words_[at++];
       if (code == kLsysEnd) return depth == 1 ? at : 0;
       if (code < kLsysNegate) {
-        if (code > kLsysNormal || at >= end_) return 0;
+        if (code > kLsysByStep || at >= end_) return 0;
         const uint32_t word = words_[at++];
+        if (code == kLsysByStep && word >= rows_) return 0;
         if (code == kLsysVariable && word >= variables) return 0;
         if (code == kLsysNumber && !(std::abs(std::bit_cast<float>(word)) <= 1.2676506e30f)) return 0;
         if (++depth > kMostStackDepth) return 0;
       } else if (code < kLsysAdd) {
-        if (code > kLsysSign || depth < 1) return 0;
+        if (code > kLsysTruncate || depth < 1) return 0;
       } else if (code < kLsysSelect) {
         if (code > kLsysAtan2 || depth < 2) return 0;
         depth -= 1;
@@ -51,7 +53,7 @@ public:
 
 private:
   std::span<const uint32_t> words_;
-  uint32_t begin_, end_;
+  uint32_t begin_, end_, rows_; ///< of the table of steps
 };
 
 Result<void> bad(const char* what) { return makeError(GPGP_ERROR_INVALID_DATA, "not a compiled L-system: %s", what); }
@@ -170,7 +172,15 @@ Result<void> Table::check() const {
     return bad("its first symbols are wrong");
   if (owned + 1 != count(kLsysSectionProductions)) return bad("it has productions without a symbol");
 
-  const Programs programs(words_, offset(kLsysSectionCode), offset(kLsysSectionCode) + count(kLsysSectionCode));
+  // The table of steps is what the code begins with, in whole rows.
+  const uint32_t rows = head(kLsysHeadRows), steps = count(kLsysSectionCode) ? words_[offset(kLsysSectionCode)] : 0;
+  if (rows && (steps == 0 || 1 + uint64_t(rows) * steps > count(kLsysSectionCode)))
+    return bad("its table of steps is wrong");
+  const uint32_t behindRows = rows ? 1 + rows * steps : 0;
+  for (uint32_t i = 1; i < behindRows; ++i)
+    if (!(std::abs(value(offset(kLsysSectionCode) + i)) <= 1.2676506e30f)) return bad("its table of steps is wrong");
+  const Programs programs(words_, offset(kLsysSectionCode) + behindRows,
+                          offset(kLsysSectionCode) + count(kLsysSectionCode), rows);
   const auto entries = [&](uint32_t first, uint32_t number, uint32_t section, uint32_t most) {
     const uint32_t size = kEntryWords[section];
     return number <= most && (number == 0 || (first >= offset(section) && (first - offset(section)) % size == 0 &&

@@ -44,6 +44,7 @@ PassBuilder::PassBuilder(const SpawnerSizes& spawner, const core::Device& owner,
   list.add({"bound keys", scratch, sizeof(uint32_t) * shader::kMaxBuckets * shader::kBoundWords});
   list.add({"report", core::ResourceKind::report});
   list.add({"ranges", buffer, 0, true});
+  list.add({"fields", buffer, 0, true});
   if (sizes.maxMeasuredAxioms) {
     const VkDeviceSize words = shader::kMeasuredWords + VkDeviceSize(sizes.maxOccupancyWords);
     list.add({"measured", scratch, sizeof(uint32_t) * words * sizes.maxMeasuredAxioms});

@@ -14,7 +14,8 @@ struct SpawnerSizes {
   uint32_t maxMeasuredAxioms = 0, maxOccupancyWords = 0; ///< words of an axiom's grid
   bool ordered = false;
   bool compact = false; ///< GpgpCompactInstance
-  VertexLayout layout;  ///< of vertices; without a stride it writes instances
+  bool interprets = true;
+  VertexLayout layout; ///< of vertices; without a stride it writes instances
 
   /// Words of a target; at least one, as buffers are not empty.
   uint32_t gridRoom() const { return maxOccupancyWords ? maxOccupancyWords : 1; }

@@ -20,9 +20,19 @@ void addClear(PassBuilder& b) {
 }
 
 void addDerive(PassBuilder& b) {
+  const auto uses = {
+      core::Use{shader::kBindGraph, read}, {shader::kBindAxioms, read},         {shader::kBindInstances, write},
+      {shader::kBindDraws, readWrite},     {shader::kBindQueues, readWrite},    {shader::kBindStacks, readWrite},
+      {shader::kBindRecords, write},       {shader::kBindCounters, readWrite},  {shader::kBindBuckets, readWrite},
+      {shader::kBindConstants, read},      {shader::kBindColliders, readWrite}, {shader::kBindColliderCells, read},
+      {shader::kBindCount, write},         {shader::kBindAxiomCounter, read},   {shader::kBindReport, write},
+      {shader::kBindRanges, readWrite},    {shader::kBindFields, read}};
+  uint64_t bindings = 0; // of every kernel, too
+  for (const core::Use& use : uses) bindings |= uint64_t(1) << use.resource;
   const auto interpreter = [&](bool colliders, Spirv spirv) {
     const Fit fit = fitOf(b.device, interpreterFor(b.device, colliders), false);
-    return b.list.add(core::ShaderDesc{"derive", spirv, specialization(b.device, fit), kDeriveConstants});
+    return b.list.add(core::ShaderDesc{"derive", spirv, specialization(b.device, fit), kDeriveConstants, bindings,
+                                       !b.sizes.interprets});
   };
   b.derive = interpreter(false, takesBatches(b.device) ? Spirv(spawn_derive_software)
                                 : b.subgroups          ? Spirv(spawn_derive_subgroups)
@@ -33,13 +43,6 @@ void addDerive(PassBuilder& b) {
         interpreter(true, b.subgroups ? Spirv(spawn_derive_colliders_subgroups) : Spirv(spawn_derive_colliders));
     link = b.list.add(core::ShaderDesc{"link", spawn_link});
   }
-  const auto uses = {
-      core::Use{shader::kBindGraph, read}, {shader::kBindAxioms, read},         {shader::kBindInstances, write},
-      {shader::kBindDraws, readWrite},     {shader::kBindQueues, readWrite},    {shader::kBindStacks, readWrite},
-      {shader::kBindRecords, write},       {shader::kBindCounters, readWrite},  {shader::kBindBuckets, readWrite},
-      {shader::kBindConstants, read},      {shader::kBindColliders, readWrite}, {shader::kBindColliderCells, read},
-      {shader::kBindCount, write},         {shader::kBindAxiomCounter, read},   {shader::kBindReport, write},
-      {shader::kBindRanges, readWrite}};
   for (uint32_t phase = 0; phase < b.sizes.phases(); ++phase) {
     const uint32_t first = phase * b.sizes.phaseStride();
     if (phase == 0)

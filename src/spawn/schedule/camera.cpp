@@ -28,6 +28,8 @@ shader::vec4 planeOf(const glm::dvec4& row, const glm::dvec3& camera, double uni
 }
 } // namespace
 
+float detailOf(const GpgpSpawnCamera* camera) { return camera && camera->detail > 0 ? camera->detail : 1.0f; }
+
 core::Result<shader::View> viewOf(const GpgpSpawnCamera* camera) {
   shader::View view{};
   if (!camera) return view;
@@ -36,6 +38,9 @@ core::Result<shader::View> viewOf(const GpgpSpawnCamera* camera) {
       !std::all_of(camera->position, camera->position + 3, [](float x) { return std::isfinite(x); }))
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "the camera's viewProjection or position is not finite");
   if (!camera->height) return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "the camera's height is 0");
+  if (!(camera->detail >= 0) || !std::isfinite(camera->detail))
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "the camera's detail is %g, which is no factor",
+                           static_cast<double>(camera->detail));
   const auto row = [&](int r) { return glm::dvec4(m[r], m[4 + r], m[8 + r], m[12 + r]); };
   const glm::dvec4 x = row(0), y = row(1), z = row(2), w = row(3);
   const glm::dvec3 position(camera->position[0], camera->position[1], camera->position[2]), forward(w);
@@ -51,7 +56,7 @@ core::Result<shader::View> viewOf(const GpgpSpawnCamera* camera) {
   const double scale = std::max(glm::length(glm::dvec3(x)), glm::length(glm::dvec3(y)));
   const double normals = parallel ? scale : depth;
   const auto plane = [&](const glm::dvec4& p) { return planeOf(p, position, normals); };
-  const float size = settle(static_cast<float>(pixels));
+  const float size = settle(static_cast<float>(pixels * static_cast<double>(detailOf(camera))));
   view.camera = {settle(camera->position[0]), settle(camera->position[1]), settle(camera->position[2]),
                  parallel ? -size : size};
   view.left = plane(w + x);

@@ -9,5 +9,7 @@ namespace gpgp::spawn {
 
 /// NULL: without a camera. The same bits for the same camera, for GPU and CPU.
 core::Result<shader::View> viewOf(const GpgpSpawnCamera* camera);
+/// Times ScreenSize().
+float detailOf(const GpgpSpawnCamera* camera);
 
 } // namespace gpgp::spawn

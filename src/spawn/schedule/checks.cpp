@@ -7,7 +7,7 @@ using core::makeError;
 using core::Result;
 
 Result<void> checkCreateInfo(const GpgpSpawnerCreateInfo& info) {
-  if (info.flags & ~(GPGP_SPAWNER_ORDERED | GPGP_SPAWNER_COMPACT))
+  if (info.flags & ~(GPGP_SPAWNER_ORDERED | GPGP_SPAWNER_COMPACT | GPGP_SPAWNER_KERNELS_ONLY))
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
   if ((info.flags & GPGP_SPAWNER_COMPACT) && info.vertices)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "flags has GPGP_SPAWNER_COMPACT, but vertices is set");
@@ -106,6 +106,11 @@ Result<void> checkSpawnInfo(const GpgpSpawnInfo& info, const Spawner& spawner, u
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "axioms.size is %llu bytes, axiomCount %u needs %llu",
                      static_cast<unsigned long long>(info.axioms.size), info.axiomCount,
                      static_cast<unsigned long long>(info.axiomCount) * sizeof(GpgpAxiom));
+  if (info.contextCount > info.axiomCount)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "contextCount is %u, axiomCount is %u", info.contextCount,
+                     info.axiomCount);
+  if (info.contextCount && info.axiomCounter.buffer)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "contextCount is %u, with axiomCounter", info.contextCount);
   if (info.axiomCounter.buffer && info.axiomCounter.size < 4)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "axiomCounter.size is below 4 bytes");
   if (info.axiomCounter.buffer && !info.axiomCount)

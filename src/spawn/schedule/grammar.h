@@ -37,6 +37,9 @@ public:
   void add(const Ready& ready);
   static constexpr uint32_t kMaxReady = 40; ///< more than axiomCount has classes, by bits, and one for any
   uint32_t readyCount() const { return readyCount_.load(std::memory_order_acquire); }
+  /// Whether a spawner has made those of its kernels that it can run, even if there are none.
+  bool prewarmed() const { return prewarmed_.load(std::memory_order_acquire); }
+  void setPrewarmed() { prewarmed_.store(true, std::memory_order_release); }
 
   const Graph graph;
   const bool uneven = isUneven(graph); ///< asked for by each recording
@@ -49,6 +52,7 @@ private:
   std::pmr::vector<uint32_t> tables_;
   std::array<Ready, kMaxReady> ready_{};
   std::atomic<uint32_t> readyCount_{0};
+  std::atomic<bool> prewarmed_{false};
 };
 
 } // namespace gpgp::spawn

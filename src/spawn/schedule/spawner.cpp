@@ -3,6 +3,7 @@
 #include "core/turns.h"
 #include "spawn/schedule/camera.h"
 #include "spawn/schedule/checks.h"
+#include "spawn/schedule/fields.h"
 #include "spawn/schedule/fits.h"
 #include "spawn/schedule/measuring.h"
 #include "spawn/shared/layout.h"
@@ -23,7 +24,9 @@ static_assert(sizeof(GpgpAxiomRange) == 4 * shader::kRangeWords && offsetof(Gpgp
 static_assert(sizeof(GpgpInstance) == 96 && offsetof(GpgpInstance, bucket) == 48 && offsetof(GpgpInstance, size) == 80);
 static_assert(sizeof(GpgpCompactInstance) == 32 && offsetof(GpgpCompactInstance, scale) == 16 &&
               offsetof(GpgpCompactInstance, rotation) == 24);
-static_assert(offsetof(shader::SpawnConstants, view) % 16 == 0, "std140 aligns structs so");
+static_assert(offsetof(shader::SpawnConstants, view) % 16 == 0 && offsetof(shader::SpawnConstants, fields) % 16 == 0 &&
+                  sizeof(shader::FieldGrid) == 32,
+              "std140 aligns structs so");
 static_assert(sizeof(VkDrawIndexedIndirectCommand) == 4 * shader::kDrawWords);
 
 /// Shared memory of derive.glsl: for each invocation a parent's fan and two sums; with queues their lists.
@@ -78,6 +81,7 @@ core::Result<core::Unique<Spawner>> Spawner::create(core::Context& context, cons
   sizes.rounds = info.maxRounds ? info.maxRounds : context.device.software ? kSoftwareRounds : kDefaultRounds;
   sizes.ordered = info.flags & GPGP_SPAWNER_ORDERED;
   sizes.compact = info.flags & GPGP_SPAWNER_COMPACT;
+  sizes.interprets = !(info.flags & GPGP_SPAWNER_KERNELS_ONLY);
   sizes.layout = layout;
   spawner->maxDepth_ = info.maxDepth ? info.maxDepth : kDefaultDepth;
   spawner->roundsGiven_ = info.maxRounds != 0;
@@ -121,20 +125,26 @@ core::Result<void> Spawner::measure(const GpgpSpawnInfo& info, const Grammar& gr
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
                            "measures->occupancy has %u words; the spawner was made with maxOccupancyWords %u",
                            measuring->gridWords, sizes_.maxOccupancyWords);
-  measuring->axioms = info.axiomCount;
+  const uint32_t measured = info.axiomCount - info.contextCount;
+  measuring->axioms = measured;
   measuring->firstGrid = shader::kMeasuredWords * sizes_.maxMeasuredAxioms;
   std::memcpy(measuring_.data(), &*measuring, sizeof *measuring);
   if (measuring->gridWords)
     std::memcpy(measuring_.data() + sizeof *measuring / 4, measures.occupancy->target, 4 * measuring->gridWords);
   record.bindings[shader::kBindMeasuring].hostData = std::as_bytes(std::span(measuring_));
   record.groups[kMeasureGroups] = {std::min((sizes_.maxTerminals - 1) / shader::kSpawnGroupSize + 1, 65535u), 1, 1};
-  record.groups[kMeasuredGroups] = {std::clamp(info.axiomCount, 1u, 65535u), 1, 1};
+  record.groups[kMeasuredGroups] = {std::clamp(measured, 1u, 65535u), 1, 1};
   record.conditions[kMeasured] = true;
-  record.readBackBytes = static_cast<uint32_t>(sizeof(GpgpAxiomMeasures)) * info.axiomCount;
+  record.readBackBytes = static_cast<uint32_t>(sizeof(GpgpAxiomMeasures)) * measured;
   return {};
 }
 
-core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& info, const Grammar& grammar) {
+core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpawnInfo& given, const Grammar& grammar) {
+  GpgpSpawnInfo info = given;
+  if (!grammar.graph.phases) { // nothing collides: what is context alone is not derived
+    info.axiomCount -= info.contextCount;
+    info.contextCount = 0;
+  }
   if (info.hostAxioms && info.axiomCount > sizes_.maxHostAxioms)
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT,
                            "axiomCount is %u, of hostAxioms; the spawner was made with maxHostAxioms %u",
@@ -145,6 +155,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "grammar has Collider or IfCollides, and maxColliders of the "
                                                         "spawner is 0");
   const Grammar::Ready* kernel = grammar.kernelFor(info.axiomCount);
+  if (!kernel && !sizes_.interprets) return noKernel(grammar);
   const KernelInfo interpreter = interpreterFor(context.device, grammar.graph.phases > 0);
   Fit fit = kernel ? kernel->info.fit : fitOf(context.device, interpreter, false);
   if (!kernel && grammar.uneven) fit.balances = limits.uneven.balances;
@@ -173,9 +184,13 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
        (!counts && !regions && (sizes_.compact || info.measures || (info.draws.buffer && grammar.graph.buckets > 1))));
   const auto view = viewOf(info.camera);
   if (!view) return view.error();
+  const auto fields = bindFields(grammar.graph, {info.fields, info.fieldCount, &info.fieldValues});
+  if (!fields) return fields.error();
   shader::SpawnConstants constants{};
   constants.view = *view;
+  std::copy(fields->grids.begin(), fields->grids.end(), constants.fields);
   constants.axiomCount = info.axiomCount;
+  constants.contextFrom = info.contextCount ? info.axiomCount - info.contextCount : UINT32_MAX;
   constants.readsAxiomCounter = info.axiomCounter.buffer ? 1 : 0;
   constants.instanceCapacity = static_cast<uint32_t>(info.instances.buffer ? info.instances.size / instanceBytes() : 0);
   constants.drawCapacity = elementsIn<VkDrawIndexedIndirectCommand>(info.draws);
@@ -243,6 +258,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.bindings[shader::kBindCount].engineBuffer = &info.count;
   record.bindings[shader::kBindNeeded].engineBuffer = &info.needed;
   record.bindings[shader::kBindRanges].engineBuffer = &info.ranges;
+  record.bindings[shader::kBindFields].engineBuffer = &info.fieldValues;
   if (info.vertices) {
     record.bindings[shader::kBindVertices].engineBuffer = &info.vertices->vertices;
     record.bindings[shader::kBindIndices].engineBuffer = &info.vertices->indices;
@@ -260,6 +276,7 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   record.conditions[kOrdered] = inOrder;
   record.conditions[kBucketed] = sorted || regions || counts || vertices();
   record.conditions[kBounded] = info.bounds.buffer != VK_NULL_HANDLE;
+  record.note[0] = std::bit_cast<uint32_t>(detailOf(info.camera));
   record.conditions[kPlaced] = !constants.reports;
   record.conditions[kColliding] = grammar.graph.phases > 1;
   for (uint32_t phase = 1; phase < phases; ++phase) record.conditions[kPhases + phase - 1] = true;
@@ -278,6 +295,18 @@ core::Result<void> Spawner::prepare(VkCommandBuffer commandBuffer, const GpgpSpa
   }
   if (auto ok = check(record); !ok) return ok;
   return Recorder::record(record);
+}
+
+core::Error Spawner::noKernel(const Grammar& grammar) {
+  if (!grammar.kernels.empty() && !grammar.prewarmed())
+    return core::makeError(GPGP_NOT_READY, "call gpgpPrewarmGrammar first: the spawner has no interpreter");
+  return core::makeError(
+      GPGP_ERROR_UNSUPPORTED,
+      grammar.kernels.empty()
+          ? "the grammar was baked without kernels, and the spawner has no interpreter "
+            "(GPGP_SPAWNER_KERNELS_ONLY)"
+          : "none of the grammar's kernels fits the device and the spawner, which has no interpreter "
+            "(GPGP_SPAWNER_KERNELS_ONLY)");
 }
 
 core::Result<void> Spawner::prewarm(Grammar& grammar) const {
@@ -309,10 +338,13 @@ core::Result<void> Spawner::prewarm(Grammar& grammar) const {
       continue; // workgroups and stacks that this device has no turns for
     const auto pipeline =
         createComputePipeline({kernel.info.schedule, kernel.spirv(),
-                               specialization(context.device, info.fit, grammar.tableOf(kernel)), kDeriveConstants});
+                               specialization(context.device, info.fit, grammar.tableOf(kernel)), kDeriveConstants},
+                              derive_);
     if (!pipeline) return pipeline.error();
     grammar.add({info, *pipeline});
   }
+  grammar.setPrewarmed();
+  if (!sizes_.interprets && grammar.readyCount() == 0) return noKernel(grammar);
   return {};
 }
 
@@ -331,6 +363,7 @@ bool Spawner::takeReport(GpgpSpawnReport& report) {
   report.keyHash[0] = state.keyHashX;
   report.keyHash[1] = state.keyHashY;
   report.depth = state.depth;
+  report.detail = std::bit_cast<float>(raw.note[0]);
   report.vertices = 4 * state.quads;
   report.verticesWritten = 4 * state.quadsWritten;
   report.colliders = state.colliders;

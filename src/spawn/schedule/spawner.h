@@ -44,6 +44,9 @@ private:
   /// That a recording takes where neither the engine nor a tuned kernel says so.
   uint32_t roundsFor(const GpgpSpawnInfo& info, const Grammar& grammar, const Fit& fit) const;
 
+  /// Why a spawner without an interpreter cannot derive a grammar.
+  static core::Error noKernel(const Grammar& grammar);
+
   /// What GpgpSpawnInfo::measures asks of a recording.
   core::Result<void> measure(const GpgpSpawnInfo& info, const Grammar& grammar, core::Record& record);
 

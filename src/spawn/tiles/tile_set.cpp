@@ -164,6 +164,9 @@ core::Result<void> checkInfo(const GpgpTileInfo& info) {
   if (info.flags & ~GPGP_TILE_MOVE) return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "flags has unknown bits");
   if (!info.capacity) return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "capacity is 0");
   if (!info.axiomCount) return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "axiomCount is 0; free the tile instead");
+  if (info.contextCount >= info.axiomCount)
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "contextCount is %u, axiomCount is %u: the tile has no axiom",
+                           info.contextCount, info.axiomCount);
   if ((info.hostAxioms != nullptr) == (info.axioms.buffer != VK_NULL_HANDLE))
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "exactly one of hostAxioms and axioms.buffer must be set");
   if (info.axioms.buffer && info.axioms.size / sizeof(GpgpAxiom) < info.axiomCount)
@@ -204,6 +207,10 @@ core::Result<void> TileSet::record(VkCommandBuffer commandBuffer, const GpgpTile
   spawn.hostAxioms = info.hostAxioms;
   spawn.axiomCount = info.axiomCount;
   spawn.camera = info.camera;
+  spawn.fields = info.fields;
+  spawn.fieldCount = info.fieldCount;
+  spawn.fieldValues = info.fieldValues;
+  spawn.contextCount = info.contextCount;
   spawn.draws = drawsOf(slot);
   if (isVertices_) {
     output.vertices = part(vertices_, bytesEach_ * first, bytesEach_ * room);

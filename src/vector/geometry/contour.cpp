@@ -1,5 +1,6 @@
 // From verbs to segments.
 #include "vector/geometry/contour.h"
+#include "vector/geometry/vectors.h"
 
 #include "vector/geometry/offset.h"
 
@@ -8,10 +9,6 @@
 
 namespace gpgp::vector {
 namespace {
-
-double length(Point p) { return std::sqrt(p.x * p.x + p.y * p.y); }
-double dot(Point a, Point b) { return a.x * b.x + a.y * b.y; }
-double cross(Point a, Point b) { return a.x * b.y - a.y * b.x; }
 
 class Builder {
 public:

@@ -140,6 +140,23 @@ template <class Number> Number parameterAt(const Controls<Number>& of, Number y)
   return whereGood((step < small) & (step > -small), t, c0, c1, c2, c3);
 }
 
+bool all(bool good) { return good; }
+bool all(decltype(Two{} < Two{}) good) { return (good[0] & good[1]) != 0; }
+
+/// The same from the parameter at a height nearby.
+template <class Number> Number parameterNear(const Controls<Number>& of, Number y, Number t) {
+  const auto [p0, p1, p2, p3] = of;
+  const Number c0 = p0 - y, c1 = 3 * (p1 - p0), c2 = 3 * (p2 - 2 * p1 + p0), c3 = p3 - 3 * p2 + 3 * p1 - p0;
+  for (int i = 0; i < 3; ++i) {
+    const Number f = ((c3 * t + c2) * t + c1) * t + c0, slope = (3 * c3 * t + 2 * c2) * t + c1;
+    const Number step = f * slope / (slope * slope - f * (3 * c3 * t + c2));
+    t = t - step;
+    const Number small = 1e-4 * t * (1 - t);
+    if (all((step < small) & (step > -small))) return t;
+  }
+  return parameterAt(of, y);
+}
+
 /// A coordinate of a cubic at a parameter.
 template <class Number> Number coordinateAt(const Controls<Number>& of, Number t) {
   const auto [p0, p1, p2, p3] = of;
@@ -176,19 +193,26 @@ double Monotone::xAt(double y) const {
   return clampX(p, coordinateAt(axisOf(p, &Point::x), parameterAt(axisOf(p, &Point::y), y)));
 }
 
+double Monotone::xNear(double y, double& t) const {
+  if (!searched(*this, y)) return xAt(y);
+  t = parameterNear(axisOf(curve.p, &Point::y), y, t);
+  return clampX(curve.p, coordinateAt(axisOf(curve.p, &Point::x), t));
+}
+
 Monotone::Place Monotone::placeAt(double y) const {
   const Point* p = curve.p;
-  if (curve.line) return {xAt(y), (p[3].x - p[0].x) / (p[3].y - p[0].y)};
+  if (curve.line)
+    return {xAt(y), (p[3].x - p[0].x) / (p[3].y - p[0].y), std::clamp((y - p[0].y) / (p[3].y - p[0].y), 0.0, 1.0)};
   if (y > p[0].y && y < p[3].y) {
     const double t = parameterAt(axisOf(p, &Point::y), y);
     return {clampX(p, coordinateAt(axisOf(p, &Point::x), t)),
-            slopeOf(p, tangentAt(axisOf(p, &Point::x), t), tangentAt(axisOf(p, &Point::y), t))};
+            slopeOf(p, tangentAt(axisOf(p, &Point::x), t), tangentAt(axisOf(p, &Point::y), t)), t};
   }
   const bool end = y > p[0].y;
   Point d = end ? p[3] - p[2] : p[1] - p[0];
   if (d == Point{}) // a control on its end: the tangent is towards the next
     d = p[end ? 1 : 2] == p[end ? 3 : 0] ? p[3] - p[0] : end ? p[3] - p[1] : p[2] - p[0];
-  return {p[end ? 3 : 0].x, slopeOf(p, d.x, d.y)};
+  return {p[end ? 3 : 0].x, slopeOf(p, d.x, d.y), end ? 1.0 : 0.0};
 }
 
 std::array<double, 2> xsAt(const Monotone& a, double ya, const Monotone& b, double yb) {
@@ -205,7 +229,39 @@ std::array<Monotone::Place, 2> placesAt(const Monotone& a, double ya, const Mono
   const Two t = parameterAt(axisOf(p, q, &Point::y), Two{ya, yb});
   const Two x = coordinateAt(axisOf(p, q, &Point::x), t);
   const Two dx = tangentAt(axisOf(p, q, &Point::x), t), dy = tangentAt(axisOf(p, q, &Point::y), t);
-  return {Monotone::Place{clampX(p, x[0]), slopeOf(p, dx[0], dy[0])}, {clampX(q, x[1]), slopeOf(q, dx[1], dy[1])}};
+  return {Monotone::Place{clampX(p, x[0]), slopeOf(p, dx[0], dy[0]), t[0]},
+          {clampX(q, x[1]), slopeOf(q, dx[1], dy[1]), t[1]}};
+}
+
+std::array<double, 2> xsNear(const Monotone& a, const Monotone& b, double y, std::array<double, 2>& near) {
+  if (!searched(a, y) || !searched(b, y)) return {a.xNear(y, near[0]), b.xNear(y, near[1])};
+  const Point *p = a.curve.p, *q = b.curve.p;
+  const Two t = parameterNear(axisOf(p, q, &Point::y), Two{y, y}, Two{near[0], near[1]});
+  near = {t[0], t[1]};
+  const Two x = coordinateAt(axisOf(p, q, &Point::x), t);
+  return {clampX(p, x[0]), clampX(q, x[1])};
+}
+
+std::optional<double> crossingNear(const Monotone& a, const Monotone& b, std::array<double, 2> near, double fine) {
+  const Point *p = a.curve.p, *q = b.curve.p;
+  const auto powers = [=](double Point::*axis) { // of the parameter
+    const auto [p0, p1, p2, p3] = axisOf(p, q, axis);
+    return std::array{p0, 3 * (p1 - p0), 3 * (p2 - 2 * p1 + p0), p3 - 3 * p2 + 3 * p1 - p0};
+  };
+  const auto xs = powers(&Point::x), ys = powers(&Point::y);
+  Two t{near[0], near[1]};
+  for (int i = 0; i < 8; ++i) {
+    const auto value = [t](const std::array<Two, 4>& c) { return ((c[3] * t + c[2]) * t + c[1]) * t + c[0]; };
+    const auto slope = [t](const std::array<Two, 4>& c) { return (3 * c[3] * t + 2 * c[2]) * t + c[1]; };
+    const Two x = value(xs), y = value(ys), dx = slope(xs), dy = slope(ys);
+    const double gapX = x[1] - x[0], gapY = y[1] - y[0], factor = 1 / (dx[1] * dy[0] - dx[0] * dy[1]);
+    const Two step = factor * Two{dx[1] * gapY - dy[1] * gapX, dx[0] * gapY - dy[0] * gapX}, down = step * dy;
+    t = t + step;
+    if (!(std::min(t[0], t[1]) >= 0 && std::max(t[0], t[1]) <= 1)) return std::nullopt;
+    // Steps grow small as the square of those before. Both curves have the height then.
+    if (std::abs(down[0]) < fine && std::abs(down[1]) < fine) return y[0] + down[0];
+  }
+  return std::nullopt;
 }
 
 int Monotone::inflections(double heights[2]) const {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <memory_resource>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,9 +43,11 @@ struct Monotone {
   double bottom() const { return curve.p[3].y; }
   /// The curve's x at a height, by safeguarded Newton; heights outside give the ends.
   double xAt(double y) const;
-  /// The same with the slope dx / dy there, which may be infinite.
+  /// The same from the parameter at a height nearby, which becomes that of `y`; takes less time where that is near.
+  double xNear(double y, double& t) const;
+  /// The same as xAt with the slope dx / dy there, which may be infinite, and the curve's parameter.
   struct Place {
-    double x, slope;
+    double x, slope, t;
   };
   Place placeAt(double y) const;
   /// Heights where it changes from bending left to bending right or back; at most two.
@@ -54,6 +57,12 @@ struct Monotone {
 /// The x and the places of two pieces at a height each: the same bits as one by one, with fewer instructions.
 std::array<double, 2> xsAt(const Monotone& a, double ya, const Monotone& b, double yb);
 std::array<Monotone::Place, 2> placesAt(const Monotone& a, double ya, const Monotone& b, double yb);
+/// xNear of two pieces at one height.
+std::array<double, 2> xsNear(const Monotone& a, const Monotone& b, double y, std::array<double, 2>& t);
+
+/// The height at which two pieces cross, to within `fine`, by Newton's steps for both parameters at once; nothing where
+/// they do not settle from `t`. Where pieces cross more than once it may be any of these.
+std::optional<double> crossingNear(const Monotone& a, const Monotone& b, std::array<double, 2> t, double fine);
 
 /// Below zero: all of `a` lies left of `b` in the rows they share, or touches it; above: right. 0: their hulls do not
 /// say. Cheap: no curve is evaluated.

@@ -1,4 +1,5 @@
 #include "vector/geometry/offset.h"
+#include "vector/geometry/vectors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +7,6 @@
 namespace gpgp::vector {
 namespace {
 
-double dot(Point a, Point b) { return a.x * b.x + a.y * b.y; }
-double cross(Point a, Point b) { return a.x * b.y - a.y * b.x; }
-Point left(Point d) { return {-d.y, d.x}; }
-double length(Point p) { return std::sqrt(dot(p, p)); }
 Point unit(Point p) {
   const double l = length(p);
   return l > 0 ? Point{p.x / l, p.y / l} : Point{};

@@ -10,7 +10,7 @@
 
 namespace gpgp::vector {
 
-/// Sorts by the upper 32 bits; what has the same there must be in the order of the lower ones.
+/// Sorts by the upper 32 bits. What has the same there stays as it is; few keys are put in the order of all bits.
 inline void sortKeys(std::pmr::vector<uint64_t>& keys) {
   constexpr size_t kFew = 128;
   if (std::is_sorted(keys.begin(), keys.end())) return;
@@ -37,6 +37,11 @@ inline uint32_t heightBits(float height) {
 }
 inline float heightOf(uint32_t bits) { return std::bit_cast<float>(bits >> 31 ? bits & 0x7fffffffu : ~bits); }
 
+/// A height and a number as one key, in the order of heights, then numbers.
+inline uint64_t heightKey(float height, uint32_t number) { return uint64_t(heightBits(height)) << 32 | number; }
+inline float heightOfKey(uint64_t key) { return heightOf(static_cast<uint32_t>(key >> 32)); }
+inline uint32_t numberOfKey(uint64_t key) { return static_cast<uint32_t>(key); }
+
 /// The numbers below `count` by height(i), a finite float, then as they are.
 template <class Height>
 std::pmr::vector<uint32_t> orderBy(uint32_t count, std::pmr::memory_resource* memory, Height&& height) {
@@ -51,9 +56,9 @@ std::pmr::vector<uint32_t> orderBy(uint32_t count, std::pmr::memory_resource* me
     return order;
   }
   std::pmr::vector<uint64_t> keys(count, 0, memory);
-  for (uint32_t i = 0; i < count; ++i) keys[i] = uint64_t(heightBits(height(i))) << 32 | i;
+  for (uint32_t i = 0; i < count; ++i) keys[i] = heightKey(height(i), i);
   sortKeys(keys);
-  for (uint32_t i = 0; i < count; ++i) order[i] = static_cast<uint32_t>(keys[i]);
+  for (uint32_t i = 0; i < count; ++i) order[i] = numberOfKey(keys[i]);
   return order;
 }
 

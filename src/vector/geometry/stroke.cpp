@@ -6,8 +6,10 @@
 // two lines are long enough, their offsets meet in one point instead, inside as outside.
 #include "vector/geometry/stroke.h"
 
+#include "vector/geometry/arcs_join.h"
 #include "vector/geometry/contour.h"
 #include "vector/geometry/offset.h"
+#include "vector/geometry/vectors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +17,6 @@
 
 namespace gpgp::vector {
 namespace {
-
-double dot(Point a, Point b) { return a.x * b.x + a.y * b.y; }
-double cross(Point a, Point b) { return a.x * b.y - a.y * b.x; }
-double length(Point p) { return std::sqrt(dot(p, p)); }
-Point left(Point d) { return {-d.y, d.x}; }
 
 class Stroker {
 public:
@@ -95,7 +92,7 @@ private:
     return j;
   }
 
-  bool hasMiters() const { return style_.join == Join::Miter || style_.join == Join::MiterClip; }
+  bool hasMiters() const { return style_.join != Join::Round && style_.join != Join::Bevel; }
 
   void side(std::span<const Segment> segments, bool closed, int side) {
     const size_t n = segments.size();
@@ -111,13 +108,13 @@ private:
       else
         appendOffset(segment.curve, s, start, end, tolerance_ * 0.8, chain_);
       if (!joints_[i].shared[side] && (closed || i + 1 < n))
-        join(joints_[i], segments[(i + 1) % n].curve.p[0], end, side);
+        join(joints_[i], segment.curve, segments[(i + 1) % n].curve, end, side);
     }
   }
 
-  void join(const Joint& j, Point p, Point start, int side) {
+  void join(const Joint& j, const Cubic& before, const Cubic& after, Point start, int side) {
     const double s = offset(side);
-    const Point end = p + s * left(j.to);
+    const Point p = after.p[0], end = p + s * left(j.to);
     if ((side == 0) == (j.turning > 0)) { // inside
       line(start, p);
       line(p, end);
@@ -125,16 +122,25 @@ private:
     }
     if (j.smooth || style_.join == Join::Round) {
       const double turn = std::abs(std::atan2(j.turning, j.cosine));
-      arc(p, start, end, j.turning > 0 ? turn : -turn);
+      arc(p, h_, start, end, j.turning > 0 ? turn : -turn);
       return;
     }
+    if (style_.join == Join::Arcs)
+      if (const auto arcs = arcsJoin(
+              {p, j.from, j.to, s, endCurvature(before), startCurvature(after), std::max(style_.miterLimit, 1.0)})) {
+        edge(start, arcs->before);
+        line(arcs->before.end, arcs->cut.end);
+        edge(arcs->cut.end, {end, arcs->behind.centre, arcs->behind.radius, arcs->behind.sweep});
+        return;
+      }
     const double cosHalf = std::sqrt(std::max(0.0, 1 + j.cosine) / 2);
     if (hasMiters() && cosHalf > 1e-6 && 1 / cosHalf <= style_.miterLimit) {
       const Point bisector = left(j.from + j.to);
       const Point tip = p + s / (cosHalf * length(bisector)) * bisector;
       line(start, tip);
       line(tip, end);
-    } else if (style_.join == Join::MiterClip && style_.miterLimit > cosHalf) { // across, at the limit (SVG 2, 13.5.5)
+    } else if (style_.join != Join::Miter && hasMiters() &&
+               style_.miterLimit > cosHalf) { // across, at the limit (SVG 2, 13.5.5)
       const double sinHalf = std::sqrt(std::max(0.0, 1 - j.cosine) / 2);
       const double reach = h_ * (style_.miterLimit - cosHalf) / sinHalf;
       const Point first = start + reach * j.from, last = end - reach * j.to;
@@ -150,7 +156,7 @@ private:
   void cap(Point p, Point d) {
     const Point n = h_ * left(d);
     if (style_.cap == Cap::Round) {
-      arc(p, p - n, p + n, std::numbers::pi);
+      arc(p, h_, p - n, p + n, std::numbers::pi);
     } else if (style_.cap == Cap::Square) {
       line(p - n, p - n + h_ * d);
       line(p - n + h_ * d, p + n + h_ * d);
@@ -173,10 +179,17 @@ private:
     if (!(a == b)) chain_.push_back(Cubic::fromLine(a, b));
   }
 
-  void arc(Point p, Point start, Point end, double sweep) {
+  void edge(Point start, const EdgePart& part) {
+    if (part.radius > 0)
+      arc(part.centre, part.radius, start, part.end, part.sweep);
+    else
+      line(start, part.end);
+  }
+
+  void arc(Point p, double radius, Point start, Point end, double sweep) {
     Shape cubics(out_.points.get_allocator().resource());
     const Point d = start - p;
-    appendArc(cubics, p, {h_, 0}, {0, h_}, std::atan2(d.y, d.x), sweep, end, tolerance_ / 4);
+    appendArc(cubics, p, {radius, 0}, {0, radius}, std::atan2(d.y, d.x), sweep, end, tolerance_ / 4);
     Point at = start;
     for (size_t i = 0; i + 2 < cubics.points.size(); i += 3) {
       chain_.push_back({{at, cubics.points[i], cubics.points[i + 1], cubics.points[i + 2]}, false});

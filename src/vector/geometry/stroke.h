@@ -7,7 +7,13 @@
 namespace gpgp::vector {
 
 enum class Cap { Butt, Round, Square };
-enum class Join { Miter, Round, Bevel, MiterClip }; ///< the last: longer miters are cut at the limit
+enum class Join {
+  Miter,
+  Round,
+  Bevel,
+  MiterClip, ///< longer miters are cut at the limit
+  Arcs       ///< edges go on with their curvature until they meet, cut at the limit; as MiterClip where they cannot
+};
 
 struct StrokeStyle {
   double width = 1;

@@ -1,5 +1,4 @@
 // The stages in a row, and the tables that the GPU reads.
-#include "vector/geometry/order.h"
 #include "vector/patch/drawing.h"
 #include "vector/patch/inversions.h"
 #include "vector/patch/scratch.h"
@@ -102,10 +101,14 @@ bool maybeTangled(const GpgpPath& path) {
   return heights > kMany * (static_cast<double>(high) - static_cast<double>(low));
 }
 
-/// The first of several tangled paths with which they outgrow the room together, as far as that is known without
-/// converting them. Takes less than a tenth of the time that converting them takes.
-std::optional<size_t> firstTooMany(std::span<const GpgpPath> paths, const OutlineRoom& room,
-                                   std::pmr::memory_resource* heap) {
+struct TooMany {
+  size_t path;
+  core::Error error;
+};
+/// The first of several tangled paths with which they outgrow the room together, or cross themselves too often, as far
+/// as that is known without converting them. Takes less than a tenth of the time that converting them takes.
+std::optional<TooMany> firstTooMany(std::span<const GpgpPath> paths, const OutlineRoom& room,
+                                    std::pmr::memory_resource* heap) {
   std::pmr::vector<size_t> tangled(heap);
   for (size_t i = 0; i < paths.size(); ++i)
     if (maybeTangled(paths[i])) tangled.push_back(i);
@@ -121,19 +124,23 @@ std::optional<size_t> firstTooMany(std::span<const GpgpPath> paths, const Outlin
     }
     return {};
   };
-  uint64_t corners = 0; // at most
-  if (!find([&](const auto& pieces, GpgpFillRule, auto* memory) {
-        const size_t crossings = crossingsOfMany(pieces, memory).value_or(0);
-        if (crossings <= kMaxCrossings) corners += 2 * uint64_t(crossings);
-        return !room.has(corners);
-      }))
-    return {};
+  uint64_t crossings = 0;
+  // Paths that cross themselves more often than one may are refused anyway, by themselves.
+  const auto crossed = find([&](const auto& pieces, GpgpFillRule, auto* memory) {
+    const size_t own = crossingsOfMany(pieces, memory).value_or(0);
+    if (own <= kMaxCrossings) crossings += own;
+    return !room.allowsCrossings(crossings);
+  });
+  if (crossed) return TooMany{*crossed, room.crossingsError()};
+  if (room.has(2 * crossings)) return {}; // were each of them a corner
   const uint64_t places = std::min(kMostPlaces, 8 * kMostPlaces / tangled.size());
   uint64_t segments = 0;
-  return find([&](const auto& pieces, GpgpFillRule rule, auto* memory) {
+  const auto outgrown = find([&](const auto& pieces, GpgpFillRule rule, auto* memory) {
     segments += leastSegments(pieces, rule, room.left(), memory, places);
     return !room.has(segments);
   });
+  if (outgrown) return TooMany{*outgrown, room.error()};
+  return {};
 }
 
 } // namespace
@@ -160,6 +167,7 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, OutlineRoom& 
   const auto swept = [&]() -> core::Result<void> {
     std::pmr::vector<Cut> cuts(memory);
     if (auto ok = findCrossings(pieces, cuts); !ok) return ok;
+    room.countCrossings(cuts.size() / 2); // each cuts two pieces
     return sweep(pieces, cuts, rule, slabs);
   }();
   if (!swept) {
@@ -168,13 +176,6 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, OutlineRoom& 
     slabs.clear();
   }
   if (slabs.size() + drawing.patches.size() > shader::kEntryPatch) return tooManyPatches();
-  // Neighbours in the list share boxes at the raster's upper level, so keep the order of the sweep.
-  const auto order = orderBy(
-      static_cast<uint32_t>(slabs.size()), memory, [&](uint32_t i) { return slabs[i].top; },
-      [&](uint32_t i, uint32_t k) {
-        const Slab &a = slabs[i], &b = slabs[k];
-        return a.left != b.left ? a.left < b.left : a.right < b.right;
-      });
   if (const size_t all = drawing.patches.size() + slabs.size(); all > drawing.patches.capacity())
     drawing.patches.reserve(std::max(all, 2 * drawing.patches.capacity()));
   constexpr uint32_t kNone = UINT32_MAX;
@@ -190,9 +191,9 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, OutlineRoom& 
   struct Last {
     float y;
     int side; ///< 1: the patch lies right of the piece, -1: left
-    double x;
+    double x, t;
   };
-  std::pmr::vector<Last> lasts(pieces.size(), Last{std::numeric_limits<float>::quiet_NaN(), 0, 0}, memory);
+  std::pmr::vector<Last> lasts(pieces.size(), Last{std::numeric_limits<float>::quiet_NaN(), 0, 0, 0}, memory);
   uint64_t segments = 0; // of the outline, but for level ones
   const auto segmentGoesOn = [&](uint32_t piece, float y, int side) {
     return lasts[piece].y == y && lasts[piece].side == side;
@@ -201,25 +202,24 @@ core::Result<void> addPath(const GpgpPath& path, Drawing& drawing, OutlineRoom& 
   /// Left's and right's x at the top and bottom of a slab, in this order.
   const auto corners = [&](const Slab& slab) {
     const Monotone &left = pieces[slab.left], &right = pieces[slab.right];
-    std::array<double, 2> top{lasts[slab.left].x, lasts[slab.right].x};
+    std::array<double, 2> top{lasts[slab.left].x, lasts[slab.right].x}, t{lasts[slab.left].t, lasts[slab.right].t};
     const double y = static_cast<double>(slab.top);
     if (!known(slab.left, slab.top) && !known(slab.right, slab.top))
-      top = xsAt(left, y, right, y);
+      top = xsNear(left, right, y, t);
     else if (!known(slab.left, slab.top))
-      top[0] = left.xAt(y);
+      top[0] = left.xNear(y, t[0]);
     else if (!known(slab.right, slab.top))
-      top[1] = right.xAt(y);
-    const double bottomY = static_cast<double>(slab.bottom);
-    const auto bottom = xsAt(left, bottomY, right, bottomY);
+      top[1] = right.xNear(y, t[1]);
+    const auto bottom = xsNear(left, right, static_cast<double>(slab.bottom), t);
     segments += !segmentGoesOn(slab.left, slab.top, 1);
     segments += !segmentGoesOn(slab.right, slab.top, -1);
-    lasts[slab.left] = {slab.bottom, 1, bottom[0]};
-    lasts[slab.right] = {slab.bottom, -1, bottom[1]};
+    lasts[slab.left] = {slab.bottom, 1, bottom[0], t[0]};
+    lasts[slab.right] = {slab.bottom, -1, bottom[1], t[1]};
     return std::array{top, bottom};
   };
   const uint32_t pathIndex = static_cast<uint32_t>(drawing.paths.size());
-  for (const uint32_t index : order) {
-    const Slab& slab = slabs[index];
+  // Neighbours in the list share boxes at the raster's upper level, so the order of the sweep is kept.
+  for (const Slab& slab : slabs) {
     PatchRecord p{};
     p.left = place(slab.left);
     p.right = place(slab.right);
@@ -297,6 +297,7 @@ core::Result<Drawing> convert(std::span<const GpgpPath> paths, size_t first, Out
   drawing.patches.reserve(verbs + verbs / 4);
   for (size_t i = 0; i < paths.size(); ++i) {
     if (!room.has(0)) return refused(first + i, room.error(), leftEmpty); // others have taken it
+    if (!room.allowsCrossings(0)) return refused(first + i, room.crossingsError(), leftEmpty);
     std::optional<core::Error> tooMany;
     if (auto ok = addPath(paths[i], drawing, room, leftEmpty ? &tooMany : nullptr); !ok)
       return refused(first + i, ok.error(), leftEmpty);
@@ -332,7 +333,8 @@ core::Result<Drawing> makeDrawing(std::span<const GpgpPath> paths, std::pmr::mem
                                   OutlineRoom* given) {
   OutlineRoom own;
   OutlineRoom& room = given ? *given : own;
-  if (const auto tooMany = firstTooMany(paths, room, memory)) return refused(first + *tooMany, room.error(), leftEmpty);
+  if (const auto tooMany = firstTooMany(paths, room, memory))
+    return refused(first + tooMany->path, tooMany->error, leftEmpty);
   constexpr uint64_t kVerbsOfBatch = 1000; // some tenths of a millisecond
   core::Result<Drawing> drawing = Drawing(memory);
   std::pmr::vector<Batch> batches(memory);

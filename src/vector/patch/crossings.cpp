@@ -4,6 +4,7 @@
 // (pieces never turn, so end points bound them); else lines are solved directly, and curves between their inflections,
 // where tangents and flattened segments bound them. The work per pair is bounded, so coincident curves cannot stall it:
 // what is undecided then differs by less than float distance anyway.
+#include "vector/geometry/order.h"
 #include "vector/patch/drawing.h"
 #include "vector/patch/inversions.h"
 #include "vector/patch/strips.h"
@@ -142,7 +143,12 @@ private:
   }
 
   double cross(const Row& from, const Row& to, double fine) {
-    double low = from.y, high = to.y, y = low + (high - low) * guess(from, to);
+    const double share = guess(from, to);
+    const auto between = [share](double t0, double t1) { return t0 + (t1 - t0) * share; };
+    if (const auto met = crossingNear(a_, b_, {between(from.a.t, to.a.t), between(from.b.t, to.b.t)}, fine);
+        met && *met >= from.y && *met <= to.y)
+      return *met;
+    double low = from.y, high = to.y, y = between(low, high);
     const bool rises = to.gap() > from.gap();
     for (int i = 0; i < 60 && high - low > fine; ++i) {
       if (!(y > low && y < high)) y = 0.5 * (low + high);
@@ -173,24 +179,17 @@ private:
   size_t rows_ = 0;
 };
 
-/// By piece, then by height, each height of a piece once.
-void sortCuts(uint32_t pieces, std::pmr::vector<Cut>& cuts) {
-  if (cuts.empty()) return;
-  std::pmr::vector<uint32_t> ends(pieces, 0, cuts.get_allocator().resource());
-  for (const Cut& cut : cuts) ++ends[cut.piece];
-  std::partial_sum(ends.begin(), ends.end(), ends.begin());
-  std::pmr::vector<Cut> sorted(cuts.size(), Cut{}, cuts.get_allocator());
-  for (size_t i = cuts.size(); i-- > 0;) sorted[--ends[cuts[i].piece]] = cuts[i]; // now where each begins
-  const auto at = [&](uint32_t i) {
-    return sorted.begin() + static_cast<ptrdiff_t>(i < pieces ? ends[i] : cuts.size());
-  };
-  auto last = sorted.begin();
-  for (uint32_t i = 0; i < pieces; ++i) {
-    std::sort(at(i), at(i + 1), [](const Cut& l, const Cut& r) { return l.y < r.y; });
-    last = std::unique_copy(at(i), at(i + 1), last, [](const Cut& l, const Cut& r) { return l.y == r.y; });
+/// By height, then by piece, each once.
+void sortCuts(std::pmr::vector<Cut>& cuts) {
+  sortKeys(cuts);
+  auto last = cuts.begin();
+  for (auto first = cuts.begin(), end = first; first != cuts.end(); first = end) {
+    const uint64_t height = *first >> 32;
+    for (end = first + 1; end != cuts.end() && *end >> 32 == height;) ++end;
+    if (!std::is_sorted(first, end)) std::sort(first, end);
+    last = std::unique_copy(first, end, last);
   }
-  sorted.erase(last, sorted.end());
-  cuts.swap(sorted);
+  cuts.erase(last, cuts.end());
 }
 
 } // namespace
@@ -249,7 +248,7 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
       const float cut = static_cast<float>(std::round(y / grid) * grid);
       ++crossings;
       for (const uint32_t piece : {l, r})
-        if (cut > pieces[piece].top() && cut < pieces[piece].bottom()) cuts.push_back({piece, cut});
+        if (cut > pieces[piece].top() && cut < pieces[piece].bottom()) cuts.push_back(heightKey(cut, piece));
     });
     work += kWorkOfRow * pair.rows();
     return isLittle();
@@ -329,7 +328,7 @@ core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vec
       }
     }
   }
-  sortCuts(static_cast<uint32_t>(pieces.size()), cuts);
+  sortCuts(cuts);
   return {};
 }
 

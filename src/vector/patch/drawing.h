@@ -58,17 +58,15 @@ inline bool inColorRange(const float* c) {
 core::Result<void> outline(const GpgpPath& path, std::pmr::vector<Monotone>& pieces,
                            std::pmr::vector<Ellipse>* ellipses = nullptr);
 
-/// Where a piece must be cut because another crosses it there.
-struct Cut {
-  uint32_t piece;
-  float y;
-};
-/// All heights at which two pieces change sides, both pieces named. Cost near linear for drawings whose pieces are
-/// short against the whole: pieces are dealt into horizontal bands of about their own height, and within a band only
-/// those whose x ranges overlap are compared; where that would be too many, strips (strips.h) find who is near.
-/// UNSUPPORTED where a path has more than kMaxCrossings, most often before they are looked for (inversions.h), or where
-/// telling its curves apart takes far more work than the crossings do, as it does where many coincide all but exactly,
-/// or in part. A pair of curves in a strip is 1, a row in which two are compared kWorkOfRow.
+/// Where a piece must be cut because another crosses it there: its height and the piece (heightKey in order.h).
+using Cut = uint64_t;
+/// All heights at which two pieces change sides, for both pieces; by height, then by piece, each cut once. Cost near
+/// linear for drawings whose pieces are short against the whole: pieces are dealt into horizontal bands of about their
+/// own height, and within a band only those whose x ranges overlap are compared; where that would be too many, strips
+/// (strips.h) find who is near. UNSUPPORTED where a path has more than kMaxCrossings, most often before they are looked
+/// for (inversions.h), or where telling its curves apart takes far more work than the crossings do, as it does where
+/// many coincide all but exactly, or in part. A pair of curves in a strip is 1, a row in which two are compared
+/// kWorkOfRow.
 constexpr size_t kMaxCrossings = size_t(1) << 22, kMaxWork = size_t(1) << 26;
 constexpr size_t kWorkOfRow = 16, kWorkOfCrossing = 32, kWorkOfPiece = 1024;
 core::Result<void> findCrossings(std::span<const Monotone> pieces, std::pmr::vector<Cut>& cuts);
@@ -78,11 +76,11 @@ struct Slab {
   uint32_t left, right;
   float top, bottom;
 };
-/// Sweeps from top to bottom over pieces cut at `cuts` (sorted by piece, then y) and appends what the fill rule calls
-/// inside as slabs, each as tall as its pair of pieces stays neighbours. The time is about that of the cuts, of level
-/// lines that pass other pieces, which no cut says, and of the slabs. UNSUPPORTED where level lines pass others more
-/// than kMaxLevelCrossings times. The limit is that of other crossings: a grid of bars may have as many of them when it
-/// stands upright as when it is turned.
+/// Sweeps from top to bottom over pieces cut at `cuts`, as findCrossings gives them, and appends what the fill rule
+/// calls inside as slabs, each as tall as its pair of pieces stays neighbours, by their tops, then by left and right
+/// piece. The time is about that of the cuts, of level lines that pass other pieces, which no cut says, and of the
+/// slabs. UNSUPPORTED where level lines pass others more than kMaxLevelCrossings times. The limit is that of other
+/// crossings: a grid of bars may have as many of them when it stands upright as when it is turned.
 constexpr size_t kMaxLevelCrossings = kMaxCrossings;
 core::Result<void> sweep(std::span<const Monotone> pieces, std::span<const Cut> cuts, GpgpFillRule rule,
                          std::pmr::vector<Slab>& slabs);

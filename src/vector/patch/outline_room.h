@@ -1,5 +1,5 @@
-// How much of the GPU's memory a drawing's outlines take, known while the drawing is made: what a device cannot bind is
-// refused then, not when all of it has been converted.
+// How much of the GPU's memory a drawing's outlines take and how often its paths cross themselves, known while the
+// drawing is made: what a device cannot bind, or what takes too long, is refused then, not when all of it is converted.
 #pragma once
 #include "core/result.h"
 #include "vector/geometry/curve.h"
@@ -22,10 +22,14 @@ constexpr uint64_t outlineBytes(uint32_t maxStorageBufferRange) {
   return uint64_t(maxStorageBufferRange ? maxStorageBufferRange : UINT32_MAX) * kMaxOutlineBuffers;
 }
 
+/// How often all paths of a drawing together may cross themselves. A second on one processor finds about a million.
+constexpr uint64_t kMaxDrawingCrossings = uint64_t(1) << 23;
+
 /// What outlines may take. Paths that are converted side by side take from the same room.
 class OutlineRoom {
 public:
-  explicit OutlineRoom(uint64_t bytes = outlineBytes(0)) : bytes_(bytes) {}
+  explicit OutlineRoom(uint64_t bytes = outlineBytes(0), uint64_t crossings = kMaxDrawingCrossings)
+      : bytes_(bytes), mostCrossings_(crossings) {}
 
   /// Whether there is room for so many segments besides those that were taken.
   bool has(uint64_t segments) const { return taken_.load(std::memory_order_relaxed) + segments <= most(); }
@@ -33,6 +37,15 @@ public:
   uint64_t left() const {
     const uint64_t taken = taken_.load(std::memory_order_relaxed);
     return taken < most() ? most() - taken : 0;
+  }
+  /// Whether paths may cross themselves so often besides those that were counted.
+  bool allowsCrossings(uint64_t crossings) const {
+    return crossings_.load(std::memory_order_relaxed) + crossings <= mostCrossings_;
+  }
+  void countCrossings(uint64_t crossings) { crossings_.fetch_add(crossings, std::memory_order_relaxed); }
+  core::Error crossingsError() const {
+    return core::makeError(GPGP_ERROR_UNSUPPORTED, "the drawing's paths cross themselves more than %llu times in all",
+                           static_cast<unsigned long long>(mostCrossings_));
   }
   core::Error error() const {
     return core::makeError(GPGP_ERROR_UNSUPPORTED,
@@ -42,8 +55,8 @@ public:
 
 private:
   uint64_t most() const { return bytes_ / sizeof(shader::SegmentRecord); }
-  uint64_t bytes_;
-  std::atomic<uint64_t> taken_{0};
+  uint64_t bytes_, mostCrossings_;
+  std::atomic<uint64_t> taken_{0}, crossings_{0};
 };
 
 /// Sorts what is most often nearly in order, as pieces are from one row to the next.
@@ -68,7 +81,8 @@ inline uint64_t leastSegments(std::span<const Monotone> pieces, GpgpFillRule rul
                               std::pmr::memory_resource* memory, uint64_t places = kMostPlaces) {
   struct Active {
     const Monotone* piece;
-    double x, step, bottom; ///< step: of a line, to the next row
+    double x, step, bottom; ///< step: to the next row; of a line in x, else of the curve's parameter t
+    double t;
     int winding;
     bool line;
     int8_t side; ///< of the piece that lies inside, in the row above; 0: both or none
@@ -92,13 +106,23 @@ inline uint64_t leastSegments(std::span<const Monotone> pieces, GpgpFillRule rul
   for (uint32_t i = 0; i < rows && segments <= limit; ++i) {
     const double y = top + (bottom - top) * (i + 0.5) / rows;
     std::erase_if(active, [&](const Active& a) { return a.bottom <= y; });
-    for (Active& a : active) a.x = a.line ? a.x + a.step : a.piece->xAt(y);
+    for (Active& a : active) {
+      if (a.line) {
+        a.x += a.step;
+        continue;
+      }
+      const double before = a.t;
+      a.x = a.piece->xNear(y, a.t += a.step);
+      a.step = a.t - before;
+    }
     for (; next < order.size() && pieces[order[next]].top() <= y; ++next) {
       const Monotone& piece = pieces[order[next]];
       const Point* p = piece.curve.p;
       if (!(piece.bottom() > y)) continue;
       const double step = (p[3].x - p[0].x) / (p[3].y - p[0].y) * ((bottom - top) / rows);
-      active.push_back({&piece, piece.xAt(y), step, piece.bottom(), piece.winding, piece.curve.line, 0});
+      const Monotone::Place at = piece.placeAt(y);
+      active.push_back(
+          {&piece, at.x, piece.curve.line ? step : 0, piece.bottom(), at.t, piece.winding, piece.curve.line, 0});
     }
     sortNearly(active, [](const Active& l, const Active& r) { return l.x < r.x; });
     // Which of two that are as good as one comes first is not known: neither counts.

@@ -1,4 +1,5 @@
 // Stages as SVG.
+#include "vector/geometry/order.h"
 #include "vector/patch/drawing.h"
 
 #include <algorithm>
@@ -126,9 +127,11 @@ std::pmr::string crossingsToSvg(std::span<const GpgpPath> paths, std::pmr::memor
       curve(out, piece.curve);
       out += "\"/>\n";
     }
-    for (const Cut& cut : cuts)
+    for (const Cut cut : cuts) {
+      const double y = heightOfKey(cut);
       append(out, "<path stroke=\"#e30\" stroke-width=\"%.4g\" d=\"M%.9g %.9gz\"/>\n", 4 * unit,
-             pieces[cut.piece].xAt(static_cast<double>(cut.y)), static_cast<double>(cut.y));
+             pieces[numberOfKey(cut)].xAt(y), y);
+    }
   });
   out += "</g>\n</svg>\n";
   return out;

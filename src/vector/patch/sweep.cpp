@@ -27,27 +27,23 @@ public:
       : pieces_(pieces), rule_(rule), slabs_(slabs), memory_(slabs.get_allocator().resource()),
         status_(static_cast<uint32_t>(pieces.size()), memory_), pieceAt_(pieces.size(), 0, memory_),
         states_(pieces.size(), State{}, memory_), open_(pieces.size(), Open{}, memory_), ends_(memory_),
-        begins_(memory_), block_(memory_), touched_(memory_), runs_(memory_), starts_(memory_) {}
+        begins_(memory_), block_(memory_), touched_(memory_), runs_(memory_), starts_(memory_),
+        slabsBefore_(slabs.size()) {}
 
-  core::Result<void> run(std::span<const Cut> cutsOfPieces) {
+  core::Result<void> run(std::span<const Cut> cuts) {
     const uint32_t count = static_cast<uint32_t>(pieces_.size());
     for (uint32_t i = 0; i < count; ++i) {
       states_[i].edge = newEdge_++;
       states_[i].top = static_cast<float>(pieces_[i].top());
       states_[i].bottom = static_cast<float>(pieces_[i].bottom());
     }
-    // By height, then by piece. Beside each cut where the edge that it begins ends, so that cuts are read in a row:
-    // each piece's own lie far apart where there are millions.
-    std::pmr::vector<uint64_t> cuts(memory_);
-    cuts.reserve(cutsOfPieces.size());
     // Where each crossing is a corner of the region there are about three slabs for two of them.
-    if (rule_ == GPGP_FILL_EVEN_ODD) slabs_.reserve(slabs_.size() + cutsOfPieces.size() * 4 / 5 + count);
-    for (const Cut& cut : cutsOfPieces) cuts.push_back(uint64_t(heightBits(cut.y)) << 32 | cut.piece);
-    sortKeys(cuts);
-    const auto heightOfCut = [&cuts](size_t i) { return heightOf(static_cast<uint32_t>(cuts[i] >> 32)); };
+    if (rule_ == GPGP_FILL_EVEN_ODD) slabs_.reserve(slabs_.size() + cuts.size() * 4 / 5 + count);
+    // Beside each cut where the edge that it begins ends, so that cuts are read in a row: each piece's own lie far
+    // apart where there are millions.
     std::pmr::vector<float> bottomsOfCuts(cuts.size(), 0, memory_);
     for (size_t i = cuts.size(); i-- > 0;)
-      bottomsOfCuts[i] = std::exchange(states_[static_cast<uint32_t>(cuts[i])].bottom, heightOfCut(i));
+      bottomsOfCuts[i] = std::exchange(states_[numberOfKey(cuts[i])].bottom, heightOfKey(cuts[i]));
     const auto tops = orderBy(count, memory_, [this](uint32_t i) { return static_cast<float>(pieces_[i].top()); });
     const auto bottoms =
         orderBy(count, memory_, [this](uint32_t i) { return static_cast<float>(pieces_[i].bottom()); });
@@ -56,24 +52,25 @@ public:
     while (bottom < count) {
       y_ = static_cast<float>(pieces_[bottoms[bottom]].bottom());
       if (top < count) y_ = std::min(y_, static_cast<float>(pieces_[tops[top]].top()));
-      if (cut < cuts.size()) y_ = std::min(y_, heightOfCut(cut));
+      if (cut < cuts.size()) y_ = std::min(y_, heightOfKey(cuts[cut]));
       ++batch_;
       starts_.clear();
       touched_.clear();
       ends_.clear();
       begins_.clear();
-      for (; cut < cuts.size() && heightOfCut(cut) == y_; ++cut)
-        goOn(static_cast<uint32_t>(cuts[cut]), bottomsOfCuts[cut]);
+      for (; cut < cuts.size() && heightOfKey(cuts[cut]) == y_; ++cut) goOn(numberOfKey(cuts[cut]), bottomsOfCuts[cut]);
       for (; bottom < count && static_cast<float>(pieces_[bottoms[bottom]].bottom()) == y_; ++bottom)
         ends_.push_back(bottoms[bottom]);
       for (; top < count && static_cast<float>(pieces_[tops[top]].top()) == y_; ++top) begins_.push_back(tops[top]);
       advance();
       repair();
       update();
+      tidySlabs();
       if (levelCrossings_ > kMaxLevelCrossings)
         return core::makeError(GPGP_ERROR_UNSUPPORTED, "level lines of the path cross its others more than %zu times",
                                kMaxLevelCrossings);
     }
+    if (openSlabs_) std::erase_if(slabs_, [](const Slab& slab) { return slab.bottom == slab.top; });
     return {};
   }
 
@@ -88,10 +85,11 @@ private:
     uint32_t known = kNone;          ///< an edge that is right of it
   };
   struct Open { // the slab whose left side is a piece
-    uint32_t right = 0, smallGlyph = 0;
-    float top = 0;
-    bool active = false;
+    uint32_t right = 0, batch = 0;
+    size_t slab = kNoSlab;
+    bool active() const { return slab != kNoSlab; }
   };
+  static constexpr size_t kNoSlab = SIZE_MAX;
 
   struct Run { // slots
     uint32_t first, last;
@@ -302,7 +300,7 @@ private:
     removedMark_ = false;
     for (const uint32_t piece : touched_) {
       Open& open = open_[piece];
-      if (open.active && open.smallGlyph != batch_) close(piece, open);
+      if (open.active() && open.batch != batch_) close(open);
     }
   }
 
@@ -316,7 +314,7 @@ private:
       const bool mark = inside(outer) != inside(inner);
       bounds = bounds || mark || status_.marked(slot);
       status_.mark(slot, mark);
-      if (open_[piece].active) touched_.push_back(piece);
+      if (open_[piece].active()) touched_.push_back(piece);
       if (slot == run.last) return bounds;
       outer = inner;
     }
@@ -340,14 +338,35 @@ private:
 
   void bound(uint32_t left, uint32_t right) {
     Open& open = open_[left];
-    if (open.active && open.right != right) close(left, open);
-    if (!open.active) open = {right, 0, y_, true};
-    open.smallGlyph = batch_;
+    if (open.active() && open.right != right) close(open);
+    if (!open.active()) {
+      open = {right, 0, slabs_.size()};
+      slabs_.push_back({left, right, y_, y_});
+      ++openSlabs_;
+    }
+    open.batch = batch_;
   }
 
-  void close(uint32_t left, Open& open) {
-    if (open.top < y_) slabs_.push_back({left, open.right, open.top, y_});
-    open.active = false;
+  /// What opened at the same height is left as high as it is, for tidySlabs().
+  void close(Open& open) {
+    slabs_[open.slab].bottom = y_;
+    removedSlab_ = removedSlab_ || slabs_[open.slab].top == y_;
+    open.slab = kNoSlab;
+    --openSlabs_;
+  }
+
+  /// Drops those of this height's slabs that closed again, and orders the others.
+  void tidySlabs() {
+    const auto first = slabs_.begin() + static_cast<ptrdiff_t>(slabsBefore_);
+    if (std::exchange(removedSlab_, false))
+      slabs_.erase(std::remove_if(first, slabs_.end(),
+                                  [this](const Slab& slab) {
+                                    return open_[slab.left].slab != static_cast<size_t>(&slab - slabs_.data());
+                                  }),
+                   slabs_.end());
+    const auto before = [](const Slab& a, const Slab& b) { return a.left < b.left; }; // one a left piece
+    if (!std::is_sorted(first, slabs_.end(), before)) std::sort(first, slabs_.end(), before);
+    for (; slabsBefore_ < slabs_.size(); ++slabsBefore_) open_[slabs_[slabsBefore_].left].slab = slabsBefore_;
   }
 
   std::span<const Monotone> pieces_;
@@ -366,7 +385,8 @@ private:
   uint32_t batch_ = 0, newEdge_ = 0;
   size_t went_ = 0; // edges that went on at this height
   size_t levelCrossings_ = 0;
-  bool removedMark_ = false;
+  size_t openSlabs_ = 0, slabsBefore_; // this height's
+  bool removedMark_ = false, removedSlab_ = false;
 };
 
 } // namespace

@@ -2,73 +2,18 @@
 // each with a solid colour or a linear or radial gradient, transformed and laid over each other. Read from the table as
 // the OpenType specification 1.9.1 has it: FreeType's own reading of version 1 is newer than what distributions ship.
 //
-// Of the rest (sweep gradients, composite modes other than source over, a shape cut out of another, variations of
-// paints) what can be is painted, and `incomplete` set. Tables that are broken, and graphs that go round in circles or
-// are too large, end with an error.
-#include "vector/text/glyph_paths.h"
-
-#include <algorithm>
-#include <cmath>
-#include <span>
-
-#include <hb-ot.h>
+// A graph with more than that (sweep gradients, composite modes other than source over, shapes in shapes) becomes a
+// picture (color_picture.h). Where paints vary, their normal form is painted, and `incomplete` set. Tables that are
+// broken, and graphs that go round in circles or are too large, end with an error.
+#include "vector/text/color_picture.h"
+#include "vector/text/color_table.h"
 
 namespace gpgp::text {
 namespace {
 
-constexpr float kPi = 3.14159265358979f;
-
-float linear(uint32_t srgb) {
-  const float value = static_cast<float>(srgb) / 255;
-  return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
-}
-
-/// A place in the table, read forwards. Beyond the table's end everything is 0, and `broken` set.
-struct Reader {
-  std::span<const uint8_t> table;
-  size_t at = 0;
-  bool broken = false;
-
-  uint32_t bytes(size_t count) {
-    if (at > table.size() || table.size() - at < count) {
-      broken = true;
-      return 0;
-    }
-    uint32_t value = 0;
-    for (; count > 0; --count) value = value << 8 | table[at++];
-    return value;
-  }
-  uint32_t u8() { return bytes(1); }
-  uint32_t u16() { return bytes(2); }
-  uint32_t u24() { return bytes(3); }
-  uint32_t u32() { return bytes(4); }
-  float i16() { return static_cast<float>(static_cast<int16_t>(bytes(2))); }
-  float f2dot14() { return i16() / 16384; }
-  float fixed() { return static_cast<float>(static_cast<int32_t>(bytes(4))) / 65536; }
-  Reader from(size_t offset) const { return {table, offset}; }
-};
-
-struct Color {
-  float value[4];
-  bool foreground;
-};
-
-class Painter {
+class Painter : ColorTable {
 public:
-  Painter(Font& font, const GpgpGlyphOutlineInfo& info, GlyphPaths& paths)
-      : font_(font), info_(info), paths_(paths), emPerUnit_(1.f / static_cast<float>(font.info().unitsPerEm)) {
-    hb_face_t* face = font.opened().face.get();
-    blob_.reset(hb_face_reference_table(face, HB_TAG('C', 'O', 'L', 'R')));
-    unsigned size = 0;
-    const char* bytes = hb_blob_get_data(blob_.get(), &size);
-    table_.table = {reinterpret_cast<const uint8_t*>(bytes), size};
-    const uint32_t palette = info.palette < font.info().paletteCount ? info.palette : 0;
-    unsigned count = hb_ot_color_palette_get_colors(face, palette, 0, nullptr, nullptr);
-    palette_.resize(count);
-    hb_ot_color_palette_get_colors(face, palette, 0, &count, palette_.data());
-    for (const GpgpFontAxis& axis : std::span(font.info().axes, font.info().axisCount))
-      varied_ = varied_ || axis.value != axis.normal;
-  }
+  Painter(Font& font, const GpgpGlyphOutlineInfo& info, GlyphPaths& paths) : ColorTable(font, info), paths_(paths) {}
 
   /// Version 0. False: the glyph has no layers.
   Result<bool> layers() {
@@ -99,6 +44,8 @@ public:
   }
 
   bool incomplete() const { return incomplete_; }
+  /// Paths do not show all of it.
+  bool needsPicture() const { return needsPicture_; }
 
 private:
   struct Shape {
@@ -106,62 +53,7 @@ private:
     Affine transform;
   };
 
-  core::Error broken() const {
-    return makeError(GPGP_ERROR_INVALID_DATA, "glyph %u: the table COLR is broken", info_.glyph);
-  }
-
-  Color color(uint32_t entry, float alpha) const {
-    Color result{{0, 0, 0, 1}, false};
-    if (entry == 0xffff) {
-      result.foreground = true;
-      if (std::any_of(info_.color, info_.color + 4, [](float value) { return value != 0; }))
-        std::copy_n(info_.color, 4, result.value);
-    } else if (entry < palette_.size()) {
-      const hb_color_t from = palette_[entry];
-      result = {{linear(hb_color_get_red(from)), linear(hb_color_get_green(from)), linear(hb_color_get_blue(from)),
-                 static_cast<float>(hb_color_get_alpha(from)) / 255},
-                false};
-    }
-    for (uint32_t i = 0; i < info_.colorCount; ++i)
-      if (info_.colors[i].entry == entry) std::copy_n(info_.colors[i].color, 4, result.value);
-    result.value[3] *= std::clamp(alpha, 0.f, 1.f);
-    return result;
-  }
-
   Result<void> shape(uint32_t glyph, const Affine& transform) { return paths_.addGlyph(font_, glyph, transform); }
-
-  /// The record of a glyph among those that lie sorted at an offset.
-  std::optional<size_t> find(size_t records, uint32_t count, size_t size, uint32_t glyph = ~0u) const {
-    if (glyph == ~0u) glyph = info_.glyph;
-    for (uint32_t low = 0, high = count; low < high;) {
-      const uint32_t middle = low + (high - low) / 2;
-      const size_t at = records + size * middle;
-      Reader record = table_.from(at);
-      const uint32_t there = record.u16();
-      if (record.broken) return {};
-      if (there == glyph) return at;
-      (there < glyph ? low : high) = there < glyph ? middle + 1 : middle;
-    }
-    return {};
-  }
-
-  std::optional<size_t> paintOf(uint32_t glyph) const {
-    Reader version = table_.from(0);
-    if (version.u16() < 1) return {};
-    const uint32_t list = table_.from(14).u32();
-    if (list == 0) return {};
-    const auto found = find(size_t(list) + 4, table_.from(list).u32(), 6, glyph);
-    if (!found) return {};
-    return list + table_.from(*found + 2).u32();
-  }
-
-  float em(float units) const { return units * emPerUnit_; }
-
-  /// m about a point that follows in the table.
-  Affine around(const Affine& m, Reader& center) const {
-    const float x = em(center.i16()), y = em(center.i16());
-    return concat({1, 0, 0, 1, x, y}, concat(m, {1, 0, 0, 1, -x, -y}));
-  }
 
   /// The paint at an offset of the table.
   Result<void> walk(size_t offset, const Affine& transform, const Shape* shapeOf, int depth) {
@@ -198,7 +90,7 @@ private:
       const size_t child = offset + paint.u24();
       const Shape next{paint.u16(), transform};
       if (paint.broken) return broken();
-      if (shapeOf) incomplete_ = true; // within a shape: the inner one alone is painted
+      if (shapeOf) needsPicture_ = true; // within a shape: the inner one alone is painted
       return walk(child, transform, &next, depth + 1);
     }
     case 2:
@@ -206,7 +98,7 @@ private:
     case 6:
     case 8: {
       if (!shapeOf) { // would paint all the plane
-        incomplete_ = true;
+        needsPicture_ = true;
         return {};
       }
       if (auto ok = shape(shapeOf->glyph, shapeOf->transform); !ok) return ok;
@@ -217,54 +109,25 @@ private:
       paths_.paint(solid.value, solid.foreground);
       return {};
     }
-    case 12: {
-      const uint32_t child = paint.u24();
-      Reader a = table_.from(offset + paint.u24());
-      Affine m{};
-      for (int i = 0; i < 6; ++i) m[static_cast<size_t>(i)] = i < 4 ? a.fixed() : em(a.fixed());
-      if (a.broken) return broken();
-      return inner(child, m);
-    }
-    case 14: {
-      const uint32_t child = paint.u24();
-      const float x = em(paint.i16()), y = em(paint.i16());
-      return inner(child, {1, 0, 0, 1, x, y});
-    }
-    case 16:   // scale in x and y
-    case 18:   // the same about a point
-    case 20:   // alike in both
-    case 22: { // the same about a point
-      const uint32_t child = paint.u24(), kind = format & ~1u;
-      const float x = paint.f2dot14(), y = kind < 20 ? paint.f2dot14() : x;
-      const Affine m = {x, 0, 0, y, 0, 0};
-      return inner(child, kind == 18 || kind == 22 ? around(m, paint) : m);
-    }
-    case 24:
-    case 26: { // rotate: half turns
-      const uint32_t child = paint.u24();
-      const float angle = paint.f2dot14() * kPi, c = std::cos(angle), s = std::sin(angle);
-      const Affine m = {c, s, -s, c, 0, 0};
-      return inner(child, format >= 26 ? around(m, paint) : m);
-    }
-    case 28:
-    case 30: { // skew
-      const uint32_t child = paint.u24();
-      const float x = std::tan(paint.f2dot14() * kPi), y = std::tan(paint.f2dot14() * kPi);
-      const Affine m = {1, y, -x, 1, 0, 0};
-      return inner(child, format >= 30 ? around(m, paint) : m);
-    }
     case 32: {
       const uint32_t source = paint.u24(), mode = paint.u8(), backdrop = paint.u24();
       constexpr uint32_t kClear = 0, kSource = 1, kBackdrop = 2, kSourceOver = 3;
       if (mode == kClear) return {};
-      if (mode > kSourceOver) incomplete_ = true;
+      if (mode > kSourceOver) needsPicture_ = true;
       if (mode != kSource)
         if (auto ok = inner(backdrop, kIdentity); !ok) return ok;
       if (mode != kBackdrop) return inner(source, kIdentity);
       return {};
     }
-    default: incomplete_ = true; return {};
+    default: break;
     }
+    if (format < 12 || format > 31) {
+      incomplete_ = true;
+      return {};
+    }
+    const auto moved = transformOf(paint, offset, format);
+    if (!moved) return broken();
+    return walk(offset + moved->first, concat(transform, moved->second), shapeOf, depth + 1);
   }
 
   /// Paints the shape that was added last with a gradient.
@@ -333,7 +196,7 @@ private:
     const bool degenerate = isLinear ? start[0] == end[0] && start[1] == end[1]
                                      : moved.startRadius < 0 || moved.startRadius >= moved.endRadius;
     if ((!isLinear && !isRadial) || !(last > first) || degenerate) {
-      incomplete_ = incomplete_ || (!isLinear && (!isRadial || degenerate));
+      needsPicture_ = needsPicture_ || (!isLinear && (!isRadial || degenerate));
       paths_.paint(stops.back().color, false);
       return {};
     }
@@ -344,24 +207,27 @@ private:
     return {};
   }
 
-  Font& font_;
-  const GpgpGlyphOutlineInfo& info_;
   GlyphPaths& paths_;
-  float emPerUnit_;
-  Owned<hb_blob_t> blob_;
-  Reader table_;
-  std::vector<hb_color_t> palette_;
   uint32_t visited_ = 0;
-  bool varied_ = false, incomplete_ = false;
+  bool incomplete_ = false, needsPicture_ = false;
 };
 
 } // namespace
 
-Result<bool> addColors(Font& font, const GpgpGlyphOutlineInfo& info, GlyphPaths& paths, bool& incomplete) {
+Result<bool> addColors(Font& font, const GpgpGlyphOutlineInfo& info, GlyphPaths& paths, ColorPicture& picture,
+                       bool& incomplete) {
   Painter painter(font, info, paths);
   auto done = painter.paints();
   if (done && !*done) done = painter.layers();
   incomplete = painter.incomplete();
+  if (!done || !painter.needsPicture()) return done;
+  auto painted = paintColorPicture(font, info);
+  if (!painted)
+    incomplete = true; // and the paths are what can be shown
+  else if (painted->pixels.empty())
+    paths = {}; // its clip box is empty
+  else
+    picture = std::move(*painted);
   return done;
 }
 

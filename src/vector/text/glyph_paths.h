@@ -52,7 +52,10 @@ private:
   bool open_ = false;
 };
 
-/// The colour layers of a glyph, where the font has some: false if not. color.cpp
-Result<bool> addColors(Font& font, const GpgpGlyphOutlineInfo& info, GlyphPaths& paths, bool& incomplete);
+struct ColorPicture;
+/// The colour layers of a glyph, where the font has some: false if not. What paths cannot show becomes a picture, which
+/// counts instead of them. color.cpp
+Result<bool> addColors(Font& font, const GpgpGlyphOutlineInfo& info, GlyphPaths& paths, ColorPicture& picture,
+                       bool& incomplete);
 
 } // namespace gpgp::text

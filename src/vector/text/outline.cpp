@@ -1,6 +1,7 @@
 // Glyphs to paths: FreeType's unhinted outlines at a size where a font unit is a pixel (or half of one), so that
 // its 26.6 points keep what variations add to a unit (but for the places of a composite glyph's parts, which it rounds
 // to units), and HarfBuzz's of CFF2, whose parts of a unit FreeType drops; and bitmap glyphs to images with their box.
+#include "vector/text/color_picture.h"
 #include "vector/text/glyph_paths.h"
 
 #include <algorithm>
@@ -226,8 +227,15 @@ Result<void> collect(Font& font, const GpgpGlyphOutlineInfo& info, GlyphPaths& p
   const bool plain = info.plain || info.stroke, scalable = font.opened().emPerUnit > 0;
   const GpgpFontColors colors = font.info().colors;
   if (!plain && scalable && (colors & (GPGP_FONT_COLOR_LAYERS | GPGP_FONT_COLOR_PAINTS))) {
-    const auto colored = addColors(font, info, paths, incomplete);
+    ColorPicture painted;
+    const auto colored = addColors(font, info, paths, painted, incomplete);
     if (!colored) return colored.error();
+    if (!painted.pixels.empty()) {
+      paths = {};
+      picture.pixels = std::move(painted.pixels);
+      picture.image = {picture.pixels.data(), painted.width, painted.height, {}};
+      std::copy_n(painted.box, 4, picture.image.box);
+    }
     if (*colored) return {};
   }
   if (!plain && (colors & GPGP_FONT_COLOR_BITMAPS)) {

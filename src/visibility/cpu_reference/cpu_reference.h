@@ -44,6 +44,7 @@ struct CpuResult {
 /// What became of one triangle, and what it is on the grid.
 struct CpuTriangle {
   uint32_t fate = shader::kOutside;
+  bool wasClipped = false; ///< and what was left faces away, or nothing was
   std::vector<shader::ScreenTriangle> pieces;
   glm::vec3 world[3] = {};
   glm::vec4 clip[3] = {};

@@ -296,14 +296,14 @@ uint32_t resolveLong(std::vector<Placed> list, vec4 depthScale, bool reversed, s
 
 /// Decides a list, front to back until all samples are covered; returns how many of it are not decided.
 uint32_t resolve(const std::vector<Candidate>& candidates, const std::vector<const Open*>& opens, const List& list,
-                 ivec2 pixel, bool reversed, vec4 depthScale, std::vector<uint32_t>& bits) {
+                 ivec2 pixel, bool reversed, vec4 depthScale, float extent, std::vector<uint32_t>& bits) {
   if (list.empty()) return 0;
   std::vector<Placed> placed;
   for (const uint32_t index : list) {
     const Candidate& c = candidates[index];
     const ScreenTriangle t = triangleOf(c);
-    const Footing footing = footingOf(t, isCompact(t), pixel);
-    const Outline outline = outlineOf(c, pixel);
+    const Footing footing = footingOf(c, pixel);
+    const Outline outline = outlineOf(c, pixel, extent);
     placed.push_back({&c, middleKey(c, outline, footing, pixel, reversed), nearestKey(t, footing, reversed),
                       farthestKey(t, footing, reversed), outline, facetOf(c, footing, pixel, reversed), opens[index],
                       pixel});
@@ -333,16 +333,32 @@ CpuResult sampleExactOnCpu(CpuInput in) {
 
   struct Piece {
     ScreenTriangle triangle;
+    Corners fine;
     ivec4 bounds;
     uint32_t id;
     bool shared, seen; // by several invocations
     std::shared_ptr<const Open> open;
+    bool isSliver = false; // without area on the grid
   };
   std::vector<Piece> pieces;
   forEachTriangle(in, [&](const DrawEntry& e, uint32_t local, uint32_t) {
     uint32_t id = 0;
     if (!isSampled(in, e) || !numberOf(in, e, local, id)) return;
     const CpuTriangle placed = placeTriangle(in, e, local);
+    if (placed.fate == kBackFacing && !placed.wasClipped && !isNonOpaque(in.draws[e.draw].flags)) {
+      const Draw& draw = in.draws[e.draw];
+      Corners fine;
+      bool swaps = false;
+      const auto& [a, b, c] = placed.clip;
+      if (!facesFinely(a, b, c, gridOf(params, e.camera), turnsFaces(draw), (draw.flags & kTwoSided) != 0, fine, swaps))
+        return;
+      const ScreenTriangle t = makeSliver(a, b, c, swaps, fine);
+      const ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(params, e.camera));
+      if (bounds.x < bounds.z && bounds.y < bounds.w)
+        pieces.push_back({t, fine, bounds, id, bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8,
+                          (standard[id / 32] >> (id % 32) & 1) != 0, nullptr, true});
+      return;
+    }
     std::shared_ptr<const Open> open;
     if (isNonOpaque(in.draws[e.draw].flags)) {
       if (!params.maxNonOpaque) return;
@@ -351,7 +367,11 @@ CpuResult sampleExactOnCpu(CpuInput in) {
     for (const ScreenTriangle& t : placed.pieces) {
       const ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(params, e.camera));
       if (bounds.x < bounds.z && bounds.y < bounds.w)
-        pieces.push_back({t, bounds, id, placed.fate == kClipped || bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8,
+        pieces.push_back({t,
+                          placed.fate == kWhole
+                              ? fineCorners(t, placed.clip[0], placed.clip[1], placed.clip[2], gridOf(params, e.camera))
+                              : unitCorners(t),
+                          bounds, id, placed.fate == kClipped || bounds.z - bounds.x > 8 || bounds.w - bounds.y > 8,
                           (standard[id / 32] >> (id % 32) & 1) != 0, open});
     }
   });
@@ -359,7 +379,7 @@ CpuResult sampleExactOnCpu(CpuInput in) {
   std::vector<uint32_t> limits(out.depth.size(), kFarthest);
   const Grid grid = gridOf(params);
   for (const Piece& piece : pieces)
-    for (int y = piece.bounds.y; y < piece.bounds.w && !piece.open; ++y)
+    for (int y = piece.bounds.y; y < piece.bounds.w && !piece.open && !piece.isSliver; ++y)
       for (int x = piece.bounds.x; x < piece.bounds.z; ++x) {
         const ivec2 pixel(x, y), point = samplePoint(pixel, grid);
         if (fillsPixel(piece.triangle, pixel, grid))
@@ -379,6 +399,7 @@ CpuResult sampleExactOnCpu(CpuInput in) {
       if (piece.seen != seen) continue;
       if (seen && !piece.shared && piece.open && isSeeThrough(piece.open->triangle.flags)) continue;
       const auto index = static_cast<uint32_t>(candidates.size());
+      const Candidate candidate = makeCandidate(t, piece.fine, piece.id);
       bool mayShow = false;
       for (int y = piece.bounds.y; y < piece.bounds.w; ++y)
         for (int x = piece.bounds.x; x < piece.bounds.z; ++x) {
@@ -387,24 +408,25 @@ CpuResult sampleExactOnCpu(CpuInput in) {
           if (depthKey(reversed ? t.zMax : t.zMin, reversed) > limit) continue;
           mayShow = true;
           if ((seen && !open[at(pixel)]) || !touches(t, isCompact(t), pixel)) continue;
-          if (nearestKey(t, isCompact(t), pixel, reversed) > limit) continue;
+          if (nearestKey(candidate, pixel, reversed) > limit) continue;
           lists[at(pixel)].push_back(index);
           ++out.counters.pairs;
         }
       if (!mayShow && !piece.shared && !seen) continue;
       for (int room = piece.open ? 2 : 1; room > 0; --room) {
-        candidates.push_back(makeCandidate(t, piece.id));
+        candidates.push_back(candidate);
         opens.push_back(piece.open.get());
       }
     }
   }
   out.counters.candidates = static_cast<uint32_t>(candidates.size());
+  const auto extent = static_cast<float>(std::max(params.width, params.height));
 
   for (int y = 0; y < height; ++y) {
     const float* s = params.depthScales + static_cast<uint32_t>(y) / params.height * 4;
     for (int x = 0; x < width; ++x)
       out.counters.unresolved += resolve(candidates, opens, lists[at(ivec2(x, y))], ivec2(x, y), reversed,
-                                         vec4(s[0], s[1], s[2], s[3]), out.bits);
+                                         vec4(s[0], s[1], s[2], s[3]), extent, out.bits);
   }
   out.ids.clear();
   finish(in, out);

@@ -185,6 +185,7 @@ CpuTriangle placeTriangle(const CpuInput& in, const DrawEntry& entry, uint32_t l
     result.depths.push_back(wholeDepths(clip[0], clip[1], clip[2], triangle, grid, perspective));
   }
   if (result.fate != kClipped) return result;
+  result.wasClipped = true;
   ScreenPolygon polygon;
   result.fate = clipTriangle(clip[0], clip[1], clip[2], grid, mirrored, twoSided, polygon);
   if (result.fate == kClipped)

@@ -64,6 +64,10 @@ Result<void> checkOrigins(const GpgpVisibilityInfo& info) {
   return {};
 }
 
+/// Of all cameras' viewports, which lie below each other: coordinates to 1/8192 pixel, of triangles that reach three
+/// viewports beyond, then stay below 2^31.
+constexpr uint32_t kMostFineRows = (1u << 18) - 4 * 8192;
+
 /// The viewport, the method and its settings, cameras, counts.
 Result<void> checkSampling(const GpgpVisibilityInfo& info, const Budgets& budgets, const CameraHistory* history) {
   if (info.width == 0 || info.height == 0 || info.width > budgets.maxWidth || info.height > budgets.maxHeight)
@@ -86,6 +90,9 @@ Result<void> checkSampling(const GpgpVisibilityInfo& info, const Budgets& budget
   if (!cameras)
     return makeError(GPGP_ERROR_INVALID_ARGUMENT, "moreCameraCount is %u; the recorder was made for %u cameras in all",
                      info.moreCameraCount, budgets.maxCameras);
+  if (info.method == GPGP_SAMPLING_EXACT && uint64_t(info.height) * cameras > kMostFineRows)
+    return makeError(GPGP_ERROR_INVALID_ARGUMENT, "height is %u for %u cameras; exact sampling has %u rows in all",
+                     info.height, cameras, kMostFineRows);
   if (auto ok = checkCameras(info); !ok) return ok;
   for (uint32_t i = 0; i < info.moreCameraCount; ++i)
     if (!info.moreCameras[i].reversedDepth != !info.camera.reversedDepth)

@@ -1,47 +1,12 @@
 // Boolean operations on random polygons and prisms: areas, volumes, and which points are in the result. Areas of
 // slices, and assets along texture coordinates.
-#include "shapes.h"
-#include "spawn/geometry/internal.h"
+#include "planar.h"
 
 #include <gtest/gtest.h>
 
 namespace gpgp::spawn::test {
 namespace {
 
-/// Of a polygon, or of faces in the plane y = 0 (x, -z).
-bool holds(const std::vector<std::vector<vec2>>& loops, vec2 p) {
-  bool inside = false;
-  for (const auto& loop : loops)
-    for (size_t i = 0; i < loop.size(); ++i) {
-      const vec2 a = loop[i], b = loop[(i + 1) % loop.size()];
-      if ((a.y > p.y) != (b.y > p.y) && a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) > p.x) inside = !inside;
-    }
-  return inside;
-}
-std::vector<std::vector<vec2>> loopsOf(MeshPool& pool, const Form& form) {
-  std::vector<std::vector<vec2>> loops;
-  for (uint32_t l = 0; l < shader::meshLoops(pool, form.mesh); ++l) {
-    const shader::Loop loop = shader::loopOf(pool, form.mesh, l);
-    std::vector<vec2> points;
-    for (uint32_t c = 0; c < loop.corners; ++c) {
-      const vec3 p =
-          shader::scopePoint(form.scope, shader::cornerPosition(pool, form.mesh, loop.firstCorner + c) * form.scale);
-      points.emplace_back(p.x, -p.z);
-    }
-    loops.push_back(points);
-  }
-  return loops;
-}
-double nearest(const std::vector<std::vector<vec2>>& loops, vec2 p) {
-  double least = 1e300;
-  for (const auto& loop : loops)
-    for (size_t i = 0; i < loop.size(); ++i) {
-      const vec2 a = loop[i], d = loop[(i + 1) % loop.size()] - a;
-      const float t = std::clamp(glm::dot(p - a, d) / glm::dot(d, d), 0.0f, 1.0f);
-      least = std::min(least, double(glm::length(a + d * t - p)));
-    }
-  return least;
-}
 Polygon moved(Polygon p, vec2 by) {
   for (auto& loop : p.loops)
     for (vec2& v : loop) v += by;

@@ -90,7 +90,7 @@ std::vector<Bytes> paints() {
           transform({2, 0, 0.5, 1, 10, 20}, ofGlyph(tiny::kCorner, solid(0xffff, 0.5)))};
 }
 
-Bytes colr() {
+Bytes colr(const Bytes& sweep) {
   // Version 0: one base glyph of two layers. Version 1: four layers, and three base glyphs.
   const Bytes bases = Bytes().u16(tiny::kLayers).u16(0).u16(2);
   const Bytes layers = Bytes().u16(tiny::kSquare).u16(0).u16(tiny::kCorner).u16(0xffff);
@@ -102,7 +102,7 @@ Bytes colr() {
   }
   list.add(bodies);
   const Bytes roots[] = {Bytes().u8(1).u8(4).u32(0), // all four layers
-                         ofGlyph(tiny::kCorner, sweepGradient()), Bytes().u8(11).u16(tiny::kCircle)};
+                         sweep, Bytes().u8(11).u16(tiny::kCircle)};
   Bytes graph = Bytes().u32(3), rootBodies;
   uint32_t id = tiny::kPaints;
   for (const Bytes& root : roots) {
@@ -213,7 +213,9 @@ std::vector<char> assemble(std::span<const Table> tables) {
 
 } // namespace
 
-std::vector<char> tinyFont() {
+namespace {
+
+std::vector<char> tinyFontWith(const Bytes& sweep) {
   const Points square = {{0, 0}, {0, 500}, {500, 500}, {500, 0}}, corner = {{0, 0}, {0, 800}, {400, 0}};
   const Points shapes[tiny::kGlyphs] = {square, square, corner, square, square, square, square};
   Bytes glyf, loca, hmtx;
@@ -245,7 +247,7 @@ std::vector<char> tinyFont() {
                           {"cmap", cmap('A', 'F')},
                           {"loca", loca},
                           {"glyf", glyf},
-                          {"COLR", colr()},
+                          {"COLR", colr(sweep)},
                           // two palettes of two entries, blue green red alpha
                           {"CPAL", Bytes()
                                        .u16(0)
@@ -261,6 +263,17 @@ std::vector<char> tinyFont() {
                                        .u32(0x80808080)}};
   return assemble(tables);
 }
+
+} // namespace
+
+std::vector<char> tinyFont() { return tinyFontWith(ofGlyph(tiny::kCorner, sweepGradient())); }
+
+std::vector<char> tinyCompositeFont(uint32_t mode) {
+  const Bytes source = ofGlyph(tiny::kCorner, solid(0, 0.75)), backdrop = ofGlyph(tiny::kSquare, solid(1, 1));
+  return tinyFontWith(Bytes().u8(32).u24(8).u8(mode).u24(8 + source.size()).add(source).add(backdrop));
+}
+
+std::vector<char> tinyNestedFont() { return tinyFontWith(ofGlyph(tiny::kCorner, ofGlyph(tiny::kSquare, solid(0, 1)))); }
 
 namespace {
 

@@ -18,6 +18,11 @@ constexpr float kUnits = 1000;
 } // namespace tiny
 
 std::vector<char> tinyFont();
+/// The same, whose glyph kSweep is the corner in entry 0 at an alpha of 3/4, composited over the square in entry 1 by a
+/// mode of PaintComposite.
+std::vector<char> tinyCompositeFont(uint32_t mode);
+/// The same, whose glyph kSweep is the square within the corner, in entry 0.
+std::vector<char> tinyNestedFont();
 
 /// CFF2, with an axis of weight from 100 over 400 to 900. Glyph 1, 'A', is a pillar from (100, 0), 100 wide and 700
 /// high under an arch; at the ends of the axis it is 40 and 300 wide, and 300 - 60 and 300 + 200 are what it takes.

@@ -56,9 +56,6 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
         (isUnsupported(s.name, s.value) || (isRoot && isUnsupportedOnRoot(s.name, s.value))))
       reporter_.warn(document_.place(node),
                      std::string(s.name) + " is not supported: " + element(node) + " is drawn without it");
-    if (s.name == "stroke-linejoin" && isWord(trim(s.value), "arcs"))
-      reporter_.warn(document_.place(node), "stroke-linejoin '" + std::string(trim(s.value)) +
-                                                "' is not supported: " + element(node) + " has miters instead");
     if (applied == Applied::Invalid) ignored(node, document_.place(node), s.name, s.value);
   };
   const auto apply = [&](const Setting& s) {
@@ -80,13 +77,19 @@ void Importer::cascade(pugi::xml_node node, const Style& parent, const LengthCon
   for (const Setting& s : settings)
     if (s.name.starts_with("--")) variables.insert_or_assign(std::string(s.name), std::string(s.value));
   if (!variables.empty()) style.variables = cascadeVariables(parent.variables, variables);
-  const auto setsSize = [](const Setting& s) { return s.name == "font-size" || s.name == "font"; };
-  for (const Setting& s : settings) // lengths in em need it
-    if (setsSize(s)) apply(s);
+  const auto isOfFont = [](const Setting& s) { return s.name.starts_with("font"); };
+  for (const Setting& s : settings) { // lengths in em need its size, and `font` sets all of the font
+    constexpr std::string_view all[] = {"font-size", "font-family", "font-weight", "font-style", "font-variant"};
+    constexpr std::string_view keywords[] = {"inherit", "initial", "unset"};
+    if (s.name == "font" && oneOf(lowered(trim(s.value)), keywords))
+      for (const std::string_view name : all) apply({name, s.value});
+    else if (isOfFont(s))
+      apply(s);
+  }
   lengths.fontSize = style.fontSize;
   if (isRoot) lengths.rootFontSize = style.fontSize;
   for (const Setting& s : settings)
-    if (!setsSize(s)) apply(s);
+    if (!isOfFont(s)) apply(s);
 }
 
 void Importer::badTransform(pugi::xml_node node, const Place& place, std::string_view name, std::string_view value) {
@@ -190,8 +193,11 @@ std::optional<Importer::Ink> Importer::resolve(const Paint& paint, const Surface
       reporter_.warn(document_.place(node), who + " refers to a pattern that refers to another file, '" +
                                                 std::string(chain.otherFile.substr(0, 60)) +
                                                 "', which is not supported");
-    if (auto tiling = tilingOf(chain, surface)) return Ink{{0, 0, 0, 1}, nullptr, nullptr, std::move(tiling)};
-    reporter_.ignored(document_.place(node), who + " refers to a pattern without extent; " + instead);
+    const bool isEmpty = !contentOf(chain);
+    if (!isEmpty)
+      if (auto tiling = tilingOf(chain, surface)) return Ink{{0, 0, 0, 1}, nullptr, nullptr, std::move(tiling)};
+    reporter_.ignored(document_.place(node),
+                      who + " refers to a pattern without " + (isEmpty ? "content; " : "extent; ") + instead);
     return plain(paint.fallback);
   }
   if (oneOf(name, kGradients)) {

@@ -32,12 +32,13 @@ void Importer::measure(const Shape& shape, const Affine& transform) {
   box_.add({box.right, box.bottom});
 }
 
-Box Importer::boxAround(pugi::xml_node node, std::string_view name, State state, const Affine& space) {
+Box Importer::boxAround(pugi::xml_node node, std::string_view name, State state, const Affine& space,
+                        const double* useSize) {
   box_ = {};
   toBox_ = inverseOf(space);
   const Mode outer = mode_;
   mode_ = Mode::Measure;
-  content(node, name, state);
+  content(node, name, state, useSize);
   mode_ = outer;
   return box_;
 }

@@ -197,14 +197,15 @@ bool parseFunction(std::string_view text, Color& color) {
   if ((!byHue && name != "rgb" && name != "rgba") || !s.take("(")) return false;
   double v[4] = {0, 0, 0, 1};
   int count = 0;
-  bool hasComma = false, isNumber = false; // hsl() with commas has percentages only (CSS Color 4, 7.1)
+  // With commas hsl() has percentages only, and rgb() those or numbers only (CSS Color 4, 5.1 and 7.1).
+  bool hasComma = false, isNumber = false, isPercentage = false;
   s.skipSpace();
   while (!s.done() && s.peek() != ')') {
     if (count == 4 || (!s.take("none") && !s.number(v[count]))) return false;
     if (s.take("%"))
-      v[count] /= 100;
+      v[count] /= 100, isPercentage |= count < 3;
     else if (count < 3 && !byHue)
-      v[count] /= 255;
+      v[count] /= 255, isNumber = true;
     else if (count < 3 && count > 0)
       v[count] /= 100, isNumber = true; // numbers are percentages
     if (byHue && count == 0) {
@@ -219,7 +220,8 @@ bool parseFunction(std::string_view text, Color& color) {
     if (s.take("/")) s.skipSpace();
     ++count;
   }
-  if ((!s.take(")") && !s.done()) || !s.done() || count < 3 || (hsl && hasComma && isNumber)) return false;
+  if ((!s.take(")") && !s.done()) || !s.done() || count < 3 || (hasComma && isNumber && (hsl || isPercentage)))
+    return false;
   if (byHue) {
     const double h = std::fmod(std::fmod(v[0], 360.0) + 360, 360.0);
     const double b = std::clamp(v[1], 0.0, 1.0), c = std::clamp(v[2], 0.0, 1.0);

@@ -137,7 +137,14 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
   }
   if (mode_ != Mode::Paint) return content(node, name, state, useSize);
   if (!state.style.filter.empty() && oneOf(name, kShapes) && shapeOf(node, name, state).empty()) return; // not rendered
-  grouped(node, name, state, [&](State& own) { content(node, name, own, useSize); });
+  const auto inside = [&](State& own) { content(node, name, own, useSize); };
+  if ((name != "svg" && name != "symbol") || node == document_.root()) return grouped(node, name, state, inside);
+  const std::optional<Viewport> viewport = viewportOf(node, state, useSize);
+  if (!viewport) return;
+  // Its clip, mask and filter are in its own coordinates, as browsers and resvg have it.
+  const std::function<Box()> box = [&, own = state] { return boxAround(node, name, own, viewport->space, useSize); };
+  const Frame frame{viewport->space, box};
+  grouped(node, name, state, inside, &frame);
 }
 
 void Importer::content(pugi::xml_node node, std::string_view name, State& state, const double* useSize) {
@@ -221,12 +228,7 @@ bool Importer::hasExtent(pugi::xml_node node, double width, double height, const
   return false;
 }
 
-/// <svg> inside another, or <symbol>: its own coordinates, and a clip where something reaches beyond its edge.
-void Importer::visitViewport(pugi::xml_node node, State& state, const double* useSize) {
-  if (node == document_.root()) {
-    if (mode_ == Mode::Paint) paintBackground(state);
-    return visitChildren(node, state);
-  }
+std::optional<Importer::Viewport> Importer::viewportOf(pugi::xml_node node, const State& state, const double* useSize) {
   LengthContext lengths = state.lengths;
   lengths.fontSize = state.style.fontSize;
   const double x = length(node, state.style, "x", lengths, LengthAxis::X, 0),
@@ -238,26 +240,39 @@ void Importer::visitViewport(pugi::xml_node node, State& state, const double* us
   const pugi::xml_attribute text = node.attribute("viewBox");
   const std::optional<ViewBox> box = parseViewBox(text.value());
   if (text && !box) ignored(node, text);
-  if (!hasExtent(node, w, h, box)) return;
-  state.transform = state.transform * Affine{1, 0, 0, 1, x, y};
-  Affine frame = state.transform;
-  state.lengths.width = w;
-  state.lengths.height = h;
+  if (!hasExtent(node, w, h, box)) return std::nullopt;
+  Viewport viewport{state.transform * Affine{1, 0, 0, 1, x, y}, {}, w, h, state.lengths};
+  viewport.lengths.width = w;
+  viewport.lengths.height = h;
   Affine fit;
   if (box) {
     fit = fitViewBox(*box, w, h, aspectRatio(node));
-    state.lengths.width = box->width;
-    state.lengths.height = box->height;
+    viewport.lengths.width = box->width;
+    viewport.lengths.height = box->height;
   }
   if (document_.name(node) == "symbol" && (node.attribute("refX") || node.attribute("refY"))) { // (SVG 2, 5.5.2)
     const ViewBox whole = box.value_or(ViewBox{0, 0, w, h});
-    const Point at = fit({referenceAlong(node, "refX", state.lengths, LengthAxis::X, whole.x, whole.width),
-                          referenceAlong(node, "refY", state.lengths, LengthAxis::Y, whole.y, whole.height)});
-    frame = frame * Affine{1, 0, 0, 1, node.attribute("refX") ? -at.x : 0, node.attribute("refY") ? -at.y : 0};
+    const Point at = fit({referenceAlong(node, "refX", viewport.lengths, LengthAxis::X, whole.x, whole.width),
+                          referenceAlong(node, "refY", viewport.lengths, LengthAxis::Y, whole.y, whole.height)});
+    viewport.frame =
+        viewport.frame * Affine{1, 0, 0, 1, node.attribute("refX") ? -at.x : 0, node.attribute("refY") ? -at.y : 0};
   }
-  state.transform = frame * fit;
+  viewport.space = viewport.frame * fit;
+  return viewport;
+}
+
+/// <svg> inside another, or <symbol>: its own coordinates, and a clip where something reaches beyond its edge.
+void Importer::visitViewport(pugi::xml_node node, State& state, const double* useSize) {
+  if (node == document_.root()) {
+    if (mode_ == Mode::Paint) paintBackground(state);
+    return visitChildren(node, state);
+  }
+  const std::optional<Viewport> viewport = viewportOf(node, state, useSize);
+  if (!viewport) return;
+  state.transform = viewport->space;
+  state.lengths = viewport->lengths;
   if (mode_ != Mode::Paint || state.style.overflowVisible) return visitChildren(node, state);
-  clipped(node, frame, w, h, state, [&] { visitChildren(node, state); });
+  clipped(node, viewport->frame, viewport->width, viewport->height, state, [&] { visitChildren(node, state); });
 }
 
 void Importer::clipped(pugi::xml_node node, const Affine& frame, double w, double h, State& state,

@@ -122,6 +122,14 @@ private:
   void visitUse(pugi::xml_node node, const State& state);
   void visitSwitch(pugi::xml_node node, const State& state);
   void visitViewport(pugi::xml_node node, State& state, const double* useSize);
+  struct Viewport {
+    Affine frame;         ///< from its rectangle, which begins at the origin
+    Affine space;         ///< from its own coordinates
+    double width, height; ///< of the rectangle
+    LengthContext lengths;
+  };
+  /// Of an <svg> inside another or a <symbol>; nothing where it has no extent.
+  std::optional<Viewport> viewportOf(pugi::xml_node node, const State& state, const double* useSize);
   /// False where a size of zero keeps the element from being drawn, which is said.
   bool hasExtent(pugi::xml_node node, double width, double height, const std::optional<ViewBox>& box);
   /// What is inside of an element whose own properties are in the state.
@@ -150,7 +158,8 @@ private:
   /// Of an element that others refer to: what it has from where it stands, not from them.
   Style styleOf(pugi::xml_node node, const LengthContext& lengths);
   /// Of all shapes inside, strokes and clips aside, in coordinates given by their transform to the page.
-  Box boxAround(pugi::xml_node node, std::string_view name, State state, const Affine& space);
+  Box boxAround(pugi::xml_node node, std::string_view name, State state, const Affine& space,
+                const double* useSize = nullptr);
   void measure(const Shape& shape, const Affine& transform);
   /// A pattern for one surface.
   struct Tiling {
@@ -176,6 +185,8 @@ private:
 
   // text.cpp
   struct Text;
+  /// What of a text's style is not drawn, unless `above`, which it stands in, asks for it as well.
+  void reportUndrawn(pugi::xml_node node, const Style& style, const Style* above);
   void drawText(pugi::xml_node node, const State& state);
   void collectText(pugi::xml_node node, const State& state, bool preserves, Text& text);
   void placeText(Text& text);
@@ -259,6 +270,8 @@ private:
   std::vector<FilterFunction> filtersOf(pugi::xml_node node, const State& state);
 
   // pattern.cpp
+  /// The pattern along references that has elements; nothing where none has.
+  static pugi::xml_node contentOf(const GradientChain& chain);
   /// Nothing where its tiles have no extent, or there is no box to measure them by.
   std::shared_ptr<const Tiling> tilingOf(const GradientChain& chain, const Surface& surface);
   void emitTiles(const Shape& shape, const Affine& transform, GpgpFillRule rule, const Tiling& tiling, double opacity,

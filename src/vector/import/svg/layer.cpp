@@ -201,6 +201,21 @@ void Importer::grouped(pugi::xml_node node, std::string_view name, State& state,
   };
   const Style& style = state.style;
   const bool clips = !style.clipPath.empty();
+  if (clips && style.blend != GPGP_BLEND_NORMAL && detail_.layers && layerCount_ < limits_.layers &&
+      state.clips + state.fading + state.layers + 1 < GPGP_MAX_LAYER_DEPTH) { // a clip isolates: blends are around it
+    const auto layer = std::make_shared<ImportedLayer>();
+    layer->layer.blend = style.blend;
+    result_.groups.push_back({state.group, 1, false, {}});
+    const auto group = static_cast<uint32_t>(result_.groups.size());
+    state.group = group;
+    ++state.layers, ++layerCount_;
+    state.style.blend = GPGP_BLEND_NORMAL;
+    grouped(node, name, state, inside, of);
+    if (result_.paths.size() == before) return nothing();
+    ++blendCount_;
+    result_.groups[group - 1].layer = layer;
+    return;
+  }
   // Clips are outermost: they cut what comes of all the rest.
   if (clips) clip(node, name, state, of);
   const pugi::xml_node masked = maskOf(node, style.mask);

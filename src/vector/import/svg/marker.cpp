@@ -96,10 +96,14 @@ std::vector<Vertex> verticesOf(const Shape& shape, const std::vector<size_t>& si
   return vertices;
 }
 
-/// Of a vertex between two segments, halfway between their directions.
+/// Of a vertex between two segments, halfway between their directions. Where the path turns right back both sides are
+/// as near: the mean of the angles from 0 to 2 pi counts, as in other renderers.
 double directionAt(const Vertex& v) {
   if (!v.hasIn || !v.hasOut) return v.hasIn ? v.in : v.hasOut ? v.out : 0;
-  return v.in + std::remainder(v.out - v.in, 2 * std::numbers::pi) / 2;
+  constexpr double pi = std::numbers::pi;
+  const auto positive = [](double angle) { return angle < 0 ? angle + 2 * pi : angle; };
+  const double in = positive(v.in), half = (positive(v.out) - in) / 2;
+  return in + half - (std::fabs(half) > pi / 2 ? pi : 0);
 }
 
 } // namespace

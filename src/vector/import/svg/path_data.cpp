@@ -46,7 +46,8 @@ private:
       if (comma) scan_.skipCommaSpace();
       const char c = scan_.peek();
       const bool more = (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '+';
-      if (!more) return comma ? before : std::string_view::npos;
+      const bool isLast = comma && (scan_.done() || c == ','); // before a command it counts as space, as in browsers
+      if (!more) return isLast ? before : std::string_view::npos;
     }
   }
 

@@ -61,18 +61,17 @@ std::shared_ptr<const ImportedLayer> moved(const ImportedLayer& layer, double dx
 
 } // namespace
 
+pugi::xml_node Importer::contentOf(const GradientChain& chain) {
+  for (const pugi::xml_node pattern : chain.gradients)
+    for (const pugi::xml_node child : pattern.children())
+      if (child.type() == pugi::node_element) return pattern;
+  return {};
+}
+
 std::shared_ptr<const Importer::Tiling> Importer::tilingOf(const GradientChain& chain, const Surface& surface) {
   const pugi::xml_node node = chain.gradients[0];
   const State& state = surface.state;
-  auto tiling = std::make_shared<Tiling>(Tiling{node, node, state});
-  for (const pugi::xml_node pattern : chain.gradients) { // whose content it is
-    const auto children = pattern.children();
-    if (std::none_of(children.begin(), children.end(),
-                     [](const pugi::xml_node& child) { return child.type() == pugi::node_element; }))
-      continue;
-    tiling->content = pattern;
-    break;
-  }
+  auto tiling = std::make_shared<Tiling>(Tiling{node, contentOf(chain), state});
   const auto isUnit = [&](const char* name, std::string_view word, std::string_view other) {
     const pugi::xml_attribute a = gradientAttribute(chain, name);
     const std::string_view text = trim(a.value());

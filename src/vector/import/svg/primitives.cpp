@@ -89,7 +89,10 @@ void Importer::FilterReader::blend(Primitive& p) {
   const uint32_t below = inputOf(p.node, "in2");
   GpgpBlendMode mode = GPGP_BLEND_NORMAL;
   const pugi::xml_attribute a = p.node.attribute("mode");
-  if (a && !parseBlendMode(trim(a.value()), mode)) importer.ignored(p.node, a);
+  if (a && (!parseBlendMode(trim(a.value()), mode) || mode == GPGP_BLEND_PLUS_LIGHTER)) { // not one of <blend-mode>
+    importer.ignored(p.node, a);
+    mode = GPGP_BLEND_NORMAL;
+  }
   add(GPGP_FILTER_BLEND, p.region, p.encoding, {}, p.input, below).mode = mode;
 }
 
@@ -174,15 +177,17 @@ void Importer::FilterReader::composite(Primitive& p) {
 }
 
 void Importer::FilterReader::convolveMatrix(Primitive& p) {
-  const auto order = pair(p, "order", 3);
+  auto order = pair(p, "order", 3);
   const auto wrong = [&](const char* name) { // shows nothing
     importer.ignored(p.node, p.node.attribute(name) ? p.node.attribute(name) : p.node.attribute("order"));
     transparent(p);
   };
+  if (!(order[0] > 0 && order[1] > 0)) { // counts as not said (Filter Effects 1, 9.9)
+    importer.ignored(p.node, p.node.attribute("order"));
+    order = {3, 3};
+  }
   for (const double o : order)
-    if (o > 0 && o != std::floor(o)) return importer.ignored(p.node, p.node.attribute("order")), passOn(p);
-  for (const double o : order)
-    if (!(o >= 1 && o == std::floor(o))) return wrong("order");
+    if (o != std::floor(o)) return wrong("order");
   if (std::max(order[0], order[1]) > static_cast<double>(kMaxOrder)) {
     unsupported(p.node, "order above " + std::to_string(kMaxOrder));
     return passOn(p);
@@ -195,7 +200,10 @@ void Importer::FilterReader::convolveMatrix(Primitive& p) {
     return transparent(p);
   }
   // Only the kernel's ratio to the divisor shows: where one is beyond what a step holds, both become smaller.
-  double divisor = number(p.node, "divisor", 0), sum = 0, most = 0;
+  constexpr double unsaid = std::numeric_limits<double>::infinity();
+  const double said = number(p.node, "divisor", unsaid);
+  if (said == 0) return wrong("divisor"); // as browsers and resvg have it
+  double divisor = said == unsaid ? 0 : said, sum = 0, most = 0;
   const auto shrink = [&](double largest) {
     if (!(largest > kReach)) return;
     for (double& k : kernel) k *= kReach / largest;

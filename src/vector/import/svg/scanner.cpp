@@ -233,6 +233,12 @@ bool parseTransform(std::string_view text, const LengthContext& context, Affine&
     double v[6] = {};
     const bool moves = name.starts_with("translate");
     int count = 0;
+    bool hasUnit = false, lacksComma = false; // those of CSS have commas, those of SVG need none and have no units
+    const auto separator = [&] {
+      s.skipSpace();
+      lacksComma |= s.peek() != ',' && s.peek() != ')';
+      s.skipCommaSpace();
+    };
     s.skipSpace();
     while (!s.done() && s.peek() != ')') {
       const size_t start = s.offset();
@@ -247,10 +253,11 @@ bool parseTransform(std::string_view text, const LengthContext& context, Affine&
         const std::string_view math = std::string_view(lower).substr(start, s.offset() - start);
         if (!isMath(math) || !evaluate(math, context, axis, v[count])) return false;
         ++count;
-        s.skipCommaSpace();
+        separator();
         continue;
       }
       if (!s.number(v[count])) return false;
+      hasUnit |= s.peek() == '%' || (s.peek() >= 'a' && s.peek() <= 'z');
       if (moves && (s.peek() == '%' || (s.peek() >= 'a' && s.peek() <= 'z'))) {
         if (!s.take("%")) s.name();
         const LengthAxis axis = count == 1 || name == "translatey" ? LengthAxis::Y : LengthAxis::X;
@@ -262,9 +269,9 @@ bool parseTransform(std::string_view text, const LengthContext& context, Affine&
           break;
         }
       ++count;
-      s.skipCommaSpace();
+      separator();
     }
-    if (!s.take(")")) return false;
+    if (!s.take(")") || (hasUnit && lacksComma)) return false;
     Affine m;
     const double radians = v[0] * (std::numbers::pi / 180);
     if (name == "matrix" && count == 6) {

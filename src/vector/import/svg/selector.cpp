@@ -99,7 +99,8 @@ bool Selector::AttributeTest::parse(Scanner& s) {
     for (s.advance(); !s.done() && s.peek() != quote; s.advance()) value += s.peek();
     if (s.done()) return false;
     s.advance();
-  } else {
+  } else { // a name, which begins with no digit
+    if (s.peek() >= '0' && s.peek() <= '9') return false;
     value = identifier(s);
     if (value.empty()) return false;
   }

@@ -1,11 +1,13 @@
 // One property at a time (SVG 2, chapters 6, 11 and 13).
-#include "vector/import/svg/style.h"
+#include "vector/import/svg/property.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace gpgp::vector::svg {
 namespace {
+
+using Context = PropertyContext;
 
 /// A list of lengths, an odd one doubled; "none" and all zero mean no dashes.
 bool parseDashes(std::string_view text, const LengthContext& lengths, std::vector<double>& dashes) {
@@ -79,101 +81,17 @@ bool parseOpacity(std::string_view text, double& value) {
   return true;
 }
 
-bool parseFontSize(std::string_view v, const Style& parent, LengthContext lengths, double& size) {
-  const struct {
-    std::string_view name;
-    double size;
-  } names[] = {{"xx-small", 9},
-               {"x-small", 10},
-               {"small", 13},
-               {"medium", 16},
-               {"large", 18},
-               {"x-large", 24},
-               {"xx-large", 32},
-               {"xxx-large", 48},
-               {"larger", parent.fontSize * 1.2},
-               {"smaller", parent.fontSize / 1.2}};
-  for (const auto& n : names)
-    if (isWord(v, n.name)) return size = n.size, true;
-  lengths.width = lengths.height = lengths.fontSize = parent.fontSize;
-  double read = 0;
-  return parseLength(v, lengths, LengthAxis::X, read) && read >= 0 && (size = read, true);
-}
-
-/// What is before the size, the size, what may be a line's height, and families.
-bool parseFont(std::string_view text, const Style& parent, const LengthContext& lengths, double& size,
-               TextStyle& style) {
-  TextStyle own = style;
-  own.weight = 400, own.italic = own.smallCaps = false, own.families.clear();
-  constexpr std::string_view systems[] = {"caption", "icon", "menu", "message-box", "small-caption", "status-bar"};
-  constexpr std::string_view before[] = {
-      "normal",         "italic",        "oblique",         "small-caps",      "bold",
-      "bolder",         "lighter",       "ultra-condensed", "extra-condensed", "condensed",
-      "semi-condensed", "semi-expanded", "expanded",        "extra-expanded",  "ultra-expanded"};
-  const std::string lower = lowered(text);
-  if (oneOf(lower, systems)) return style = own, size = 16, true;
-  std::string_view rest = lower;
-  const auto word = [&rest] { return rest.substr(0, rest.find_first_of(" \t\r\n\f/")); };
-  double weight = 0;
-  const auto isWeight = [&](std::string_view number) {
-    return parseLength(number, lengths, LengthAxis::X, weight) && weight >= 1 && weight <= 1000 &&
-           number.find_first_not_of("+.0123456789") == number.npos;
-  };
-  const auto isAngle = [](std::string_view angle) {
-    constexpr std::string_view units[] = {"deg", "grad", "rad", "turn"};
-    Scanner s(angle);
-    double number = 0;
-    return s.number(number) && oneOf(s.name(), units) && s.done();
-  };
-  for (int i = 0; i < 4 && (oneOf(word(), before) || isWeight(word())); ++i) {
-    const bool slanted = word() == "oblique";
-    own.italic |= slanted || word() == "italic";
-    own.smallCaps |= word() == "small-caps";
-    if (word() == "bold" || word() == "bolder") own.weight = 700;
-    if (isWeight(word())) own.weight = weight;
-    rest = trim(rest.substr(word().size()));
-    if (slanted && isAngle(word())) rest = trim(rest.substr(word().size()));
-  }
-  double read = 0;
-  if (!parseFontSize(word(), parent, lengths, read)) return false;
-  rest = trim(rest.substr(word().size()));
-  if (rest.substr(0, 1) == "/") {
-    rest = trim(rest.substr(1));
-    double height = 0;
-    if (word() != "normal" && !parseLength(word(), lengths, LengthAxis::X, height)) return false;
-    rest = trim(rest.substr(word().size()));
-  }
-  own.families = text.substr(text.size() - rest.size());
-  return !rest.empty() && (size = read, style = own, true);
-}
-
-template <class T> struct Word {
-  std::string_view word;
-  T value;
-};
-template <class T, size_t N> bool choose(std::string_view text, const Word<T> (&words)[N], T& value) {
-  for (const auto& w : words)
-    if (isWord(text, w.word)) return value = w.value, true;
-  return false;
-}
 constexpr Word<GpgpFillRule> kRules[] = {{"nonzero", GPGP_FILL_NON_ZERO}, {"evenodd", GPGP_FILL_EVEN_ODD}};
 constexpr Word<Cap> kCaps[] = {{"butt", Cap::Butt}, {"round", Cap::Round}, {"square", Cap::Square}};
 constexpr Word<Join> kJoins[] = {{"miter", Join::Miter},
                                  {"round", Join::Round},
                                  {"bevel", Join::Bevel},
                                  {"miter-clip", Join::MiterClip},
-                                 {"arcs", Join::Miter}};
+                                 {"arcs", Join::Arcs}};
 constexpr Word<bool> kInterpolations[] = {{"auto", false}, {"srgb", false}, {"linearrgb", true}};
 constexpr Word<bool> kOverflows[] = {
     {"visible", true}, {"auto", true}, {"hidden", false}, {"scroll", false}, {"clip", false}};
 constexpr Word<bool> kVisibilities[] = {{"visible", true}, {"hidden", false}, {"collapse", false}};
-
-struct Context {
-  Style& style;
-  const Style& parent;
-  std::string_view value;
-  const LengthContext& lengths;
-};
 
 bool setStrokeWidth(const Context& c) {
   double v = 0;
@@ -185,7 +103,7 @@ bool setMiterLimit(const Context& c) {
   double v = 0;
   Scanner s(c.value);
   const bool isNumber = isMath(c.value) ? evaluate(c.value, {}, LengthAxis::X, v) : s.number(v) && s.done();
-  return isNumber && v >= 1 && (c.style.miterLimit = v, true);
+  return isNumber && v >= 0 && (c.style.miterLimit = std::max(v, 1.0), true); // below 1 no miter is within it
 }
 bool setColor(const Context& c) {
   if (isCurrentColor(c.value)) return c.style.color = c.parent.color, true;
@@ -311,52 +229,6 @@ bool setMarkers(const Context& c) {
   std::string all;
   return setMarker(c, all) && (c.style.markers.fill(all), true);
 }
-bool setFontSize(const Context& c) {
-  double read = 0; // negative: an error of SVG 1.1, for which resvg shows nothing
-  return parseFontSize(c.value, c.parent, c.lengths, c.style.fontSize) ||
-         (parseLength(c.value, c.lengths, LengthAxis::X, read) && (c.style.fontSize = 0, true));
-}
-bool setWeight(const Context& c) {
-  constexpr Word<double> names[] = {{"normal", 400}, {"bold", 700}};
-  double& weight = c.style.text.weight;
-  const double above = c.parent.text.weight;
-  if (isWord(c.value, "bolder")) return weight = above < 350 ? 400 : above < 550 ? 700 : 900, true;
-  if (isWord(c.value, "lighter")) return weight = above < 550 ? 100 : above < 750 ? 400 : 700, true;
-  if (choose(c.value, names, weight)) return true;
-  Scanner s(c.value);
-  double v = 0;
-  return s.number(v) && s.done() && v >= 1 && v <= 1000 && (weight = v, true);
-}
-bool setSpacing(const Context& c, double& spacing) {
-  if (isWord(c.value, "normal")) return spacing = 0, true;
-  return parseLength(c.value, c.lengths, LengthAxis::X, spacing);
-}
-bool setSlant(const Context& c) {
-  const std::string_view word = c.value.substr(0, c.value.find_first_of(" \t\r\n\f"));
-  const bool slants = isWord(word, "italic") || isWord(word, "oblique"); // an angle may be behind
-  return (slants || isWord(word, "normal")) && (c.style.text.italic = slants, true);
-}
-bool setSpace(const Context& c) {
-  const std::string_view first = c.value.substr(0, c.value.find(' '));
-  const bool keeps = isWord(first, "pre") || isWord(first, "pre-wrap") || isWord(first, "break-spaces");
-  c.style.text.space = keeps ? TextStyle::Space::Preserve : TextStyle::Space::Collapse;
-  return !c.value.empty();
-}
-constexpr Word<double> kAnchors[] = {{"start", 0}, {"middle", 0.5}, {"end", 1}};
-constexpr Word<bool> kKernings[] = {{"auto", false}, {"normal", false}, {"none", true}};
-bool setKerning(const Context& c) { // of SVG 1.1; other lengths than 0 are not in use
-  double length = 0;
-  return c.style.text.unkerned = parseLength(c.value, c.lengths, LengthAxis::X, length) && length == 0, true;
-}
-constexpr Word<bool> kDirections[] = {{"ltr", false}, {"rtl", true}};
-using Bidi = TextStyle::Bidi;
-constexpr Word<Bidi> kBidis[] = {{"normal", Bidi::Normal},          {"embed", Bidi::Embed},
-                                 {"bidi-override", Bidi::Override}, {"isolate", Bidi::Isolate},
-                                 {"plaintext", Bidi::Plaintext},    {"isolate-override", Bidi::IsolateOverride}};
-bool setVertical(const Context& c) {
-  const std::string lower = lowered(c.value);
-  return c.style.text.vertical = lower.starts_with("tb") || lower.starts_with("vertical"), !lower.empty();
-}
 bool setReference(const Context& c, std::string& reference) {
   return reference = isWord(c.value, "none") ? std::string_view() : c.value, true;
 }
@@ -365,16 +237,6 @@ constexpr Word<bool> kIsolations[] = {{"auto", false}, {"isolate", true}};
 constexpr Word<bool> kMaskTypes[] = {{"luminance", false}, {"alpha", true}};
 constexpr Word<bool> kFilterInterpolations[] = {{"auto", true}, {"srgb", false}, {"linearrgb", true}};
 
-struct Property {
-  std::string_view name;
-  bool (*set)(const Context&);
-  void (*take)(Style& to, const Style& from);
-};
-
-#define GPGP_PROPERTY(name, member, setter)                                                                            \
-  {                                                                                                                    \
-    name, [](const Context& c) { return setter; }, [](Style& to, const Style& from) { to.member = from.member; }       \
-  }
 const Property kProperties[] = {
     GPGP_PROPERTY("fill", fill, parsePaint(c.value, c.style.fill)),
     GPGP_PROPERTY("stroke", stroke, parsePaint(c.value, c.style.stroke)),
@@ -394,8 +256,6 @@ const Property kProperties[] = {
     GPGP_PROPERTY("color-interpolation", mixesLinear, choose(c.value, kInterpolations, c.style.mixesLinear)),
     GPGP_PROPERTY("display", displayed, setDisplay(c)),
     GPGP_PROPERTY("overflow", overflowVisible, setOverflow(c)),
-    GPGP_PROPERTY("font-size", fontSize, setFontSize(c)),
-    GPGP_PROPERTY("font", fontSize, parseFont(c.value, c.parent, c.lengths, c.style.fontSize, c.style.text)),
     GPGP_PROPERTY("paint-order", paintOrder, setPaintOrder(c)),
     GPGP_PROPERTY("vector-effect", nonScalingStroke, setVectorEffect(c)),
     GPGP_PROPERTY("background", background, setBackground(c)),
@@ -420,39 +280,16 @@ const Property kProperties[] = {
                   choose(c.value, kFilterInterpolations, c.style.filtersLinear)),
     GPGP_PROPERTY("mix-blend-mode", blend, parseBlendMode(c.value, c.style.blend)),
     GPGP_PROPERTY("isolation", isolated, choose(c.value, kIsolations, c.style.isolated)),
-    GPGP_PROPERTY("font-family", text.families, (c.style.text.families = c.value, !c.value.empty())),
-    GPGP_PROPERTY("font-weight", text.weight, setWeight(c)),
-    GPGP_PROPERTY("font-style", text.italic, setSlant(c)),
-    GPGP_PROPERTY("font-variant", text.smallCaps,
-                  (c.style.text.smallCaps = lowered(c.value).find("small-caps") != std::string::npos, true)),
-    GPGP_PROPERTY("font-kerning", text.unkerned, choose(c.value, kKernings, c.style.text.unkerned)),
-    GPGP_PROPERTY("kerning", text.unkerned, setKerning(c)),
-    GPGP_PROPERTY("letter-spacing", text.letterSpacing, setSpacing(c, c.style.text.letterSpacing)),
-    GPGP_PROPERTY("word-spacing", text.wordSpacing, setSpacing(c, c.style.text.wordSpacing)),
-    GPGP_PROPERTY("text-anchor", text.anchor, choose(c.value, kAnchors, c.style.text.anchor)),
-    GPGP_PROPERTY("direction", text.rightToLeft, choose(c.value, kDirections, c.style.text.rightToLeft)),
-    GPGP_PROPERTY("writing-mode", text.vertical, setVertical(c)),
-    GPGP_PROPERTY("white-space", text.space, setSpace(c)),
-    GPGP_PROPERTY("dominant-baseline", text.dominantBaseline,
-                  (c.style.text.dominantBaseline =
-                       isWord(c.value, "no-change") ? c.parent.text.dominantBaseline : lowered(c.value),
-                   true)),
-    GPGP_PROPERTY("alignment-baseline", text.alignmentBaseline,
-                  (c.style.text.alignmentBaseline = lowered(c.value), true)),
-    GPGP_PROPERTY("unicode-bidi", text.bidi, choose(c.value, kBidis, c.style.text.bidi)),
-    GPGP_PROPERTY("baseline-shift", text.baselineShift, (c.style.text.baselineShift = lowered(c.value), true)),
-    GPGP_PROPERTY("text-decoration", text.decoration,
-                  c.value.find(',') == c.value.npos && (c.style.text.decoration = lowered(c.value), true)),
     GPGP_PROPERTY("marker", markers, setMarkers(c)),
     GPGP_PROPERTY("marker-start", markers[0], setMarker(c, c.style.markers[0])),
     GPGP_PROPERTY("marker-mid", markers[1], setMarker(c, c.style.markers[1])),
     GPGP_PROPERTY("marker-end", markers[2], setMarker(c, c.style.markers[2])),
 };
-#undef GPGP_PROPERTY
 
 const Property* findProperty(std::string_view name) {
-  for (const Property& p : kProperties)
-    if (p.name == name) return &p;
+  for (const std::span<const Property> table : {std::span<const Property>(kProperties), textProperties()})
+    for (const Property& p : table)
+      if (p.name == name) return &p;
   return nullptr;
 }
 
@@ -469,6 +306,8 @@ Style Style::inherited() const {
   s.unsupportedEffect = false;
   s.text.baselineShift.clear(), s.text.alignmentBaseline.clear(), s.text.decoration.clear();
   s.text.bidi = fresh.text.bidi;
+  for (size_t i = 0; i < TextStyle::kUndrawn; ++i)
+    if (!textPropertiesUndrawn()[i].isInherited) s.text.undrawn[i] = false;
   s.stopColor = fresh.stopColor;
   s.stopOpacity = fresh.stopOpacity;
   s.clipPath.clear();
@@ -500,9 +339,22 @@ bool isGeometry(std::string_view name) {
 
 bool isPresentationAttribute(std::string_view name) {
   constexpr std::string_view unsupported[] = {"shape-rendering", "image-rendering", "clip"},
-                             no[] = {"font",          "background", "background-color", "mix-blend-mode",
-                                     "isolation",     "translate",  "rotate",           "scale",
-                                     "transform-box", "marker",     "font-kerning"};
+                             no[] = {"font",
+                                     "background",
+                                     "background-color",
+                                     "mix-blend-mode",
+                                     "isolation",
+                                     "translate",
+                                     "rotate",
+                                     "scale",
+                                     "transform-box",
+                                     "marker",
+                                     "font-kerning",
+                                     "white-space",
+                                     "white-space-collapse"};
+  constexpr std::string_view undrawn[] = {"font-size-adjust", "glyph-orientation-vertical"}; // others are of CSS alone
+  for (const UndrawnProperty& p : textPropertiesUndrawn())
+    if (p.name == name) return oneOf(name, undrawn);
   return (findProperty(name) && !oneOf(name, no)) || oneOf(name, unsupported);
 }
 
@@ -518,7 +370,6 @@ bool isUnsupported(std::string_view name, std::string_view value) {
                                         "shape-rendering",
                                         "image-rendering",
                                         "zoom",
-                                        "all",
                                         "animation",
                                         "animation-name",
                                         "content-visibility",
@@ -584,8 +435,18 @@ bool hasUnsupported(std::string_view value) {
 Applied applyProperty(Style& style, const Style& parent, std::string_view name, std::string_view value,
                       const LengthContext& lengths) {
   const Property* property = findProperty(name);
-  if (!property) return Applied::Unknown;
   const Context context{style, parent, trim(value), lengths};
+  if (name == "all") { // CSS Cascade 4, 3.2
+    constexpr std::string_view words[] = {"inherit", "initial", "unset", "revert", "revert-layer"};
+    const std::string word = lowered(context.value);
+    if (!oneOf(word, words)) return Applied::Invalid;
+    const Style from = word == "inherit" ? parent : word == "initial" ? Style() : parent.inherited();
+    for (const std::span<const Property> table : {std::span<const Property>(kProperties), textProperties()})
+      for (const Property& p : table)
+        if (p.name != "direction" && p.name != "unicode-bidi") p.take(style, from);
+    return Applied::Yes;
+  }
+  if (!property) return Applied::Unknown;
   const auto takeFrom = [&](const Style& other) {
     property->take(style, other);
     return Applied::Yes;

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -35,14 +36,23 @@ struct Paint {
 struct TextStyle {
   // inherited
   std::string families, dominantBaseline;
-  double weight = 400, letterSpacing = 0, wordSpacing = 0;
+  double weight = 400, stretch = 100, letterSpacing = 0, wordSpacing = 0;
   bool italic = false, smallCaps = false, unkerned = false, rightToLeft = false, vertical = false;
   double anchor = 0; ///< how much of a line lies before its place
   enum class Space { AsXml, Collapse, Preserve } space = Space::AsXml;
+  static constexpr size_t kUndrawn = 18;
+  std::array<bool, kUndrawn> undrawn{}; ///< asks for what textPropertiesUndrawn() lists
   // not inherited
   std::string baselineShift, alignmentBaseline, decoration;
   enum class Bidi { Normal, Embed, Override, Isolate, IsolateOverride, Plaintext } bidi = Bidi::Normal;
 };
+
+/// A property that would change how text looks and is not supported.
+struct UndrawnProperty {
+  std::string_view name;
+  bool isInherited, isOfVerticalLines;
+};
+std::span<const UndrawnProperty, TextStyle::kUndrawn> textPropertiesUndrawn();
 
 /// A part of the property filter (Filter Effects 1, chapter 5).
 struct FilterFunction {

@@ -2,8 +2,11 @@
 #include "vector/import/svg/stylesheet.h"
 
 #include "vector/import/svg/media.h"
+#include "vector/import/svg/supports.h"
 
 #include <algorithm>
+#include <charconv>
+#include <optional>
 
 namespace gpgp::vector::svg {
 namespace {
@@ -64,6 +67,32 @@ size_t pastSpace(std::string_view text, size_t at) {
   return at;
 }
 
+/// Escapes of letters by their numbers as the letters, outside of strings (CSS Syntax 3, 4.3.7).
+std::string withoutEscapes(std::string text) {
+  if (text.find('\\') == text.npos) return text;
+  std::string out;
+  for (size_t at = 0; at < text.size();) {
+    uint32_t code = 0;
+    size_t end = at + 1;
+    if (text[at] == '\\') {
+      const size_t most = std::min(end + 6, text.size());
+      const auto read = std::from_chars(text.data() + end, text.data() + most, code, 16);
+      end = static_cast<size_t>(read.ptr - text.data());
+    }
+    const bool isLetter = ((code | 0x20) >= 'a' && (code | 0x20) <= 'z') || code == '-' || code == '_' ||
+                          (code >= 0x80 && code < 0xd800) || (code >= 0xe000 && code <= 0x10ffff);
+    if (isLetter) {
+      appendUtf8(out, code);
+      at = end + (end < text.size() && (text[end] == ' ' || text[end] == '\t'));
+      continue;
+    }
+    const size_t past = pastToken(text, at);
+    out += text.substr(at, past - at);
+    at = past;
+  }
+  return out;
+}
+
 /// Separators in comments, strings and brackets do not count.
 template <class F> void split(std::string_view text, char separator, F&& part) {
   for (size_t begin = 0; begin <= text.size();) {
@@ -92,7 +121,7 @@ std::pair<std::string, std::string_view> uriAt(std::string_view text) {
 } // namespace
 
 std::vector<Declaration> parseDeclarations(std::string_view original) {
-  const std::string text = withoutComments(original);
+  const std::string text = withoutEscapes(withoutComments(original));
   std::vector<Declaration> declarations;
   split(text, ';', [&declarations](std::string_view part) {
     const size_t colon = part.find(':');
@@ -167,11 +196,15 @@ void StyleSheet::readAtRule(std::string_view name, std::string_view prelude, std
   if (isWord(name, "import")) {
     if (!reading.importsCount || reading.depth)
       return reporter.ignored(place, rule + " does not stand before all others; ignored");
-    const auto [uri, media] = uriAt(prelude);
+    auto [uri, media] = uriAt(prelude);
     if (uri.empty()) return reporter.ignored(place, rule + " has " + shown + ", which is not an address; ignored");
-    const std::string lower = lowered(media);
-    const bool isLayer = lower.starts_with("layer") || lower.find("supports(") != lower.npos;
-    const Media is = isLayer ? Media::Unknown : evaluateMedia(media);
+    constexpr std::string_view kSupports = "supports(";
+    if (isWord(media.substr(0, kSupports.size()), kSupports)) {
+      const size_t end = findOutside(media, kSupports.size(), ")");
+      if (!evaluateSupportsOfImport(media.substr(kSupports.size(), end - kSupports.size())).value_or(false)) return;
+      media = trim(media.substr(std::min(end + 1, media.size())));
+    }
+    const Media is = lowered(media).starts_with("layer") ? Media::Unknown : evaluateMedia(media);
     if (is == Media::Unknown)
       return reporter.warn(place, rule + " has the condition '" + std::string(media.substr(0, 60)) +
                                       "', which is not supported: its style sheet does not count");
@@ -186,8 +219,17 @@ void StyleSheet::readAtRule(std::string_view name, std::string_view prelude, std
     return;
   }
   reading.importsCount = false;
-  if (!isWord(name, "media")) return reporter.warn(place, rule + " is not supported");
-  const Media is = evaluateMedia(prelude);
+  const bool isSupports = isWord(name, "supports");
+  if (!isSupports && !isWord(name, "media")) return reporter.warn(place, rule + " is not supported");
+  Media is = Media::Unknown;
+  if (isSupports) {
+    const std::optional<bool> holds = evaluateSupports(prelude);
+    if (!holds)
+      return reporter.ignored(place, rule + " has " + shown + ", which is not a condition; its contents are ignored");
+    is = *holds ? Media::Yes : Media::No;
+  } else {
+    is = evaluateMedia(prelude);
+  }
   if (is == Media::Unknown || reading.depth >= kMaxDepth)
     return reporter.warn(place,
                          rule + " has the condition " + shown + ", which is not supported: its contents are ignored");

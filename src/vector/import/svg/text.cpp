@@ -42,6 +42,17 @@ Shape shapeOfGlyph(const GpgpPath& path) {
 
 } // namespace
 
+void Importer::reportUndrawn(pugi::xml_node node, const Style& style, const Style* above) {
+  const auto properties = textPropertiesUndrawn();
+  for (size_t i = 0; i < properties.size(); ++i) {
+    const UndrawnProperty& p = properties[i];
+    if (!style.text.undrawn[i] || (p.isOfVerticalLines && !style.text.vertical)) continue;
+    if (p.isInherited && above && above->text.undrawn[i]) continue;
+    reporter_.warn(document_.place(node),
+                   std::string(p.name) + " is not supported: " + element(node) + " is drawn without it");
+  }
+}
+
 /// Appends what an element holds, and what is in it.
 void Importer::collectText(pugi::xml_node node, const State& state, bool preserves, Text& text) {
   using Space = TextStyle::Space;
@@ -59,7 +70,7 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
   const auto append = [&](std::string_view value) {
     if (!(state.style.fontSize > 0)) return; // nothing is seen
     if (run != text.runs.size() - 1) text.runs.push_back(kept), run = text.runs.size() - 1;
-    for (const char c : value) {
+    for (const char c : withoutBreaks(value)) {
       const bool isSpace = c == ' ' || c == '\t' || c == '\n' || c == '\r';
       if (c == 0x7f || (isSpace && !keeps && text.afterSpace)) continue; // what deletes is not seen
       if ((c & 0xc0) != 0x80) {
@@ -96,6 +107,7 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
       if (!isCopy) append(child.value());
       continue;
     }
+    if (isCopy) continue; // in place of what it holds
     const std::string_view name = document_.name(child);
     constexpr std::string_view silent[] = {"title",        "desc",          "metadata",         "animate", "set",
                                            "animateColor", "animateMotion", "animateTransform", "script"};
@@ -114,10 +126,12 @@ void Importer::collectText(pugi::xml_node node, const State& state, bool preserv
     if (!entered || !isFor(child)) continue;
     State& inner = *entered;
     reportUnsupported(child, name, inner.style);
+    reportUndrawn(child, inner.style, &state.style);
     const struct {
       bool is;
       const char* what;
-    } effects[] = {{!inner.style.clipPath.empty(), "clip-path"},
+    } effects[] = {{inner.style.opacity < 1, "opacity"},
+                   {!inner.style.clipPath.empty(), "clip-path"},
                    {!inner.style.mask.empty(), "mask"},
                    {!inner.style.filter.empty(), "filter"},
                    {inner.style.blend != GPGP_BLEND_NORMAL, "mix-blend-mode"}};
@@ -216,6 +230,7 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
   const Text::Character& begin = text.characters[first];
   const size_t from = begin.begin, to = last < text.characters.size() ? text.characters[last].begin : text.bytes.size();
   std::vector<GpgpSvgTextSpan> spans;
+  const bool isVertical = text.vertical && text.runs[begin.run].track == 0;
   for (size_t i = first; i < last; ++i) {
     const Text::Character& c = text.characters[i];
     const auto end = static_cast<uint32_t>((i + 1 < last ? text.characters[i + 1].begin : to) - from);
@@ -227,7 +242,8 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     const TextStyle& style = run.state.style.text;
     spans.push_back({static_cast<uint32_t>(c.begin - from), end, style.families.c_str(), run.language.c_str(),
                      static_cast<float>(run.state.style.fontSize), static_cast<float>(style.weight), 0, style.italic,
-                     style.smallCaps, style.unkerned, style.letterSpacing != 0});
+                     style.smallCaps, style.unkerned, style.letterSpacing != 0, static_cast<float>(style.stretch),
+                     isVertical});
   }
   const Text::Run& run = text.runs[begin.run];
   const TextStyle& style = run.state.style.text;
@@ -302,7 +318,7 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     g.advance = static_cast<double>(g.metrics.advance);
     g.size = static_cast<double>(g.metrics.size);
     places.push_back({static_cast<double>(g.metrics.x) + shift, static_cast<double>(g.metrics.y) + down});
-    width = std::max(width, static_cast<double>(g.metrics.x) + g.advance + shift - lead);
+    if (k == 0 || g.metrics.advance > 0) width = static_cast<double>(g.metrics.x) + g.advance + shift - lead;
     const TextStyle& of = text.runs[c.run].state.style.text;
     const uint32_t character = characterAt(text.bytes, c.offset);
     if (g.metrics.advance > 0 && isWordSpace(character)) shift += of.wordSpacing;
@@ -362,6 +378,7 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
   if (track && (begin.x || first == 0 || text.runs[text.characters[first - 1].run].track != run.track))
     text.along = begin.x.value_or(0); // of its path, whatever the current text position is
   const double left = (track ? track->offset + text.along : vertical ? text.at.y : text.at.x) - before * width;
+  size_t base = 0, baseGlyph = 0; // of the cluster: in the line, and in the text
   for (size_t k = 0; k < taken.glyphs.size(); ++k) {
     Text::Glyph& g = taken.glyphs[k];
     const Text::Run& of = text.runs[text.characters[g.character].run];
@@ -374,7 +391,7 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     const bool isEdge = dominant == "before-edge" || dominant == "after-edge"; // of alignment-baseline alone
     const std::string_view baseline = !isDominant ? std::string_view(own) : isEdge ? std::string_view() : dominant;
     const bool isCentral =
-        vertical && (baseline.empty() || baseline == "auto"); // lines run through the letters' middle
+        text.vertical && (baseline.empty() || baseline == "auto"); // lines run through the letters' middle
     const double raised = of.shift + g.size * (of.superscripts * static_cast<double>(g.metrics.superscript) -
                                                of.subscripts * static_cast<double>(g.metrics.subscript));
     const double lower = baselineOffset(isCentral ? "central" : baseline, g.metrics) * g.size - raised + places[k].y;
@@ -382,13 +399,15 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     g.advance *= stretches[k];
     g.angle = text.characters[g.character].rotate * (std::numbers::pi / 180);
     g.at = {x, text.at.y + lower};
-    if (vertical && isUpright(characterAt(text.bytes, text.characters[g.character].offset))) {
+    if (vertical && (g.metrics.vertical || isUpright(characterAt(text.bytes, text.characters[g.character].offset)))) {
       const double middle = baselineOffset("central", g.metrics) * g.size; // of its square
       g.at = {text.at.x - places[k].y + raised - g.advance / 2, x + g.advance / 2 + middle};
     } else if (vertical) {
       g.at = {text.at.x - lower, x};
       g.angle += std::numbers::pi / 2;
     }
+    const bool isAttached = k > 0 && taken.glyphs[k - 1].metrics.cluster == g.metrics.cluster; // a mark on its letter
+    if (!isAttached) base = k, baseGlyph = text.glyphs.size();
     if (track) {
       Point place;
       double angle = 0;
@@ -399,6 +418,13 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     }
     g.line = vertical ? Point{text.at.x - places[k].y + raised, x} : g.at;
     g.lineAngle = vertical ? std::numbers::pi / 2 : g.angle;
+    if (isAttached) { // goes with it as one
+      const Text::Glyph& letter = text.glyphs[baseGlyph];
+      const double c = std::cos(letter.angle), s = std::sin(letter.angle);
+      g.at = letter.at + Affine{c, s, -s, c, 0, 0}(places[k] - places[base]);
+      g.angle = letter.angle, g.hidden = letter.hidden;
+      g.line = letter.line, g.lineAngle = letter.lineAngle;
+    }
     const double c = std::cos(g.angle), s = std::sin(g.angle);
     g.map = Affine{c, s, -s, c, g.at.x, g.at.y} * Affine{stretches[k] * g.size, 0, 0, g.size, 0, 0};
     if (!g.hidden) {
@@ -420,6 +446,7 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
 }
 
 void Importer::drawText(pugi::xml_node node, const State& state) {
+  reportUndrawn(node, state.style, nullptr);
   Text text;
   text.node = node;
   Text::Run run;

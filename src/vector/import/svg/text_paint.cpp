@@ -28,10 +28,11 @@ std::shared_ptr<const Gradient> gradientMoved(const GpgpGradient& from, const Af
 
 /// Runs in painting order: lines below, glyphs, lines through.
 void Importer::paintText(Text& text) {
-  const auto paint = [&](const Text::Run& run, const Shape& shape, const std::optional<Color>& own) {
+  // With the paints of a run, which may be around what is seen.
+  const auto paint = [&](const Text::Run& run, const Shape& shape, const std::optional<Color>& own, bool isSeen) {
     const State& state = run.state;
     const Style& style = state.style;
-    if (shape.empty() || !style.visible || !(state.opacity > 0)) return;
+    if (shape.empty() || !isSeen || !(state.opacity > 0)) return;
     group_ = state.group;
     if (mode_ == Mode::Clip) return emit(shape, state.transform, style.clipRule, {}, 1, run.node);
     if (own)
@@ -52,6 +53,7 @@ void Importer::paintText(Text& text) {
     const size_t of = text.characters[text.glyphs[begin].character].run;
     const Text::Run& run = text.runs[of];
     while (end < text.glyphs.size() && text.characters[text.glyphs[end].character].run == of) ++end;
+    const bool isVisible = run.state.style.visible;
     const auto decorate = [&](bool through) {
       for (const Text::Decoration& d : run.decorations)
         for (const std::string_view kind : {"underline", "overline", "line-through"}) {
@@ -83,7 +85,7 @@ void Importer::paintText(Text& text) {
             append(lines, rectangle(0, g.size * (y - thick / 2), width, g.size * thick, 0, 0, 1),
                    Affine{c, s, -s, c, g.line.x, g.line.y});
           }
-          paint(text.runs[d.run], lines, std::nullopt);
+          paint(text.runs[d.run], lines, std::nullopt, isVisible);
         }
     };
     decorate(false);
@@ -95,8 +97,8 @@ void Importer::paintText(Text& text) {
           append(all, part.shape, text.glyphs[i].map);
           continue;
         }
-        paint(run, all, std::nullopt), all = Shape();
-        const bool isSeen = run.state.style.visible && mode_ != Mode::Clip;
+        paint(run, all, std::nullopt, isVisible), all = Shape();
+        const bool isSeen = isVisible && mode_ != Mode::Clip;
         group_ = run.state.group;
         if (part.picture && isSeen)
           emitPicture(rectangle(0, 0, 1, 1, 0, 0, 1), run.state, text.glyphs[i].map * part.place, *part.picture,
@@ -108,10 +110,10 @@ void Importer::paintText(Text& text) {
                {{}, gradientMoved(part.gradient->gradient, run.state.transform * text.glyphs[i].map)},
                run.state.style.fillOpacity * run.state.opacity, run.node);
         else
-          paint(run, one, part.color);
+          paint(run, one, part.color, isVisible);
       }
     }
-    paint(run, all, std::nullopt);
+    paint(run, all, std::nullopt, isVisible);
     decorate(true);
   }
 }

@@ -1,0 +1,167 @@
+// A recorder's descriptors: which shaders share a set, its layouts, and the sets of each recording in flight.
+#include "core/recorder.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace gpgp::core {
+namespace {
+constexpr VkDeviceSize kPushConstantBytes = 128;
+
+constexpr uint64_t bit(size_t resource) { return uint64_t(1) << resource; }
+
+bool isStorageBuffer(const Resource& resource) {
+  return descriptorType(resource.kind) == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+}
+
+} // namespace
+
+Result<void> Recorder::groupBindings(uint32_t formCount) {
+  const uint32_t limit = context.device.limits.maxPerStageDescriptorStorageBuffers;
+  uint64_t all = 0, buffers = 0;
+  for (size_t i = 0; i < passes_.resources.size(); ++i) {
+    if (passes_.resources[i].kind != ResourceKind::texture) all |= bit(i);
+    if (isStorageBuffer(passes_.resources[i])) buffers |= bit(i);
+  }
+  groupOf_.assign(passes_.shaders.size(), 0);
+  computeGroups_ = 1;
+  if (static_cast<uint32_t>(std::popcount(buffers)) <= limit) {
+    groups_.push_back({all});
+    return {};
+  }
+  const auto bindingsOfCode = [&](const ShaderCode& code) -> Result<uint64_t> {
+    if (code.count == 0) return uint64_t(0);
+    const auto words = ShaderWords::of(code, &context.host());
+    if (!words) return words.error();
+    return bindingsOf(words->words());
+  };
+  const auto checkFits = [&](const char* shader, uint64_t resources) -> Result<void> {
+    if (const int count = std::popcount(resources & buffers); static_cast<uint32_t>(count) > limit)
+      return makeError(GPGP_ERROR_UNSUPPORTED,
+                       "the shader \"%s\" takes %d storage buffers, but a stage of the device has %u "
+                       "(maxPerStageDescriptorStorageBuffers)",
+                       shader, count, limit);
+    return {};
+  };
+  size_t open = SIZE_MAX; // the group that the next shader joins where it fits
+  for (size_t i = 0; i < passes_.shaders.size(); ++i) {
+    const ShaderDesc& shader = passes_.shaders[i];
+    uint64_t resources = shader.bindings;
+    if (!resources) {
+      const auto found = bindingsOfCode(shader.spirv);
+      if (!found) return found.error();
+      resources = *found;
+    }
+    if (auto ok = checkFits(shader.name, resources); !ok) return ok;
+    const auto fits = [&](uint64_t group) {
+      return static_cast<uint32_t>(std::popcount((group | resources) & buffers)) <= limit;
+    };
+    if (shader.bindings) { // alone, so that it is the same in all recorders
+      groupOf_[i] = static_cast<uint8_t>(groups_.size());
+      groups_.push_back({resources});
+    } else if (open != SIZE_MAX && fits(groups_[open].resources)) {
+      groupOf_[i] = static_cast<uint8_t>(open);
+      groups_[open].resources |= resources;
+    } else {
+      open = groups_.size();
+      groupOf_[i] = static_cast<uint8_t>(open);
+      groups_.push_back({resources});
+    }
+  }
+  computeGroups_ = static_cast<uint32_t>(groups_.size());
+  for (uint32_t form = 0; form < formCount; ++form) {
+    uint64_t resources = 0;
+    const DrawShaders& draw = draw_[form];
+    for (const ShaderDesc* shader : {&draw.vertex, &draw.fragment, &draw.multiviewVertex, &draw.multiviewFragment}) {
+      const auto found = bindingsOfCode(shader->spirv);
+      if (!found) return found.error();
+      resources |= *found;
+    }
+    if (auto ok = checkFits(draw.fragment.name, resources); !ok) return ok;
+    groupOfDraw_[form] = static_cast<uint8_t>(groups_.size());
+    groups_.push_back({resources});
+  }
+  return {};
+}
+
+Result<void> Recorder::createLayouts() {
+  const Device& device = context.device;
+  const VkShaderStageFlags stages = shaderStages();
+  std::array<VkDescriptorSetLayoutBinding, kMaxResources> bindings{};
+  VkDescriptorSetLayoutCreateInfo setInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
+  setInfo.pBindings = bindings.data();
+  for (uint32_t i = 0; i < passes_.resources.size(); ++i) {
+    if (passes_.resources[i].kind != ResourceKind::texture) continue;
+    if (textureCount_ == 0) firstTexture_ = i;
+    bindings[textureCount_++] = {i - firstTexture_, descriptorType(ResourceKind::texture), 1, stages, nullptr};
+  }
+  if (textureCount_) {
+    setInfo.bindingCount = textureCount_;
+    const VkResult result = device.vk.CreateDescriptorSetLayout(device.device, &setInfo, nullptr, &textureLayout_);
+    if (result != VK_SUCCESS) return vulkanError(result, "vkCreateDescriptorSetLayout");
+  }
+  for (BindingGroup& group : groups_) {
+    setInfo.bindingCount = 0;
+    for (uint32_t i = 0; i < passes_.resources.size(); ++i)
+      if (group.resources & bit(i))
+        bindings[setInfo.bindingCount++] = {i, descriptorType(passes_.resources[i].kind), 1, stages, nullptr};
+    VkResult result = device.vk.CreateDescriptorSetLayout(device.device, &setInfo, nullptr, &group.setLayout);
+    if (result != VK_SUCCESS) return vulkanError(result, "vkCreateDescriptorSetLayout");
+    const VkDescriptorSetLayout setLayouts[2] = {group.setLayout, textureLayout_};
+    const VkPushConstantRange range{stages, 0, kPushConstantBytes};
+    VkPipelineLayoutCreateInfo layoutInfo{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
+    layoutInfo.setLayoutCount = textureCount_ ? 2 : 1;
+    layoutInfo.pSetLayouts = setLayouts;
+    layoutInfo.pushConstantRangeCount = 1;
+    layoutInfo.pPushConstantRanges = &range;
+    result = device.vk.CreatePipelineLayout(device.device, &layoutInfo, nullptr, &group.layout);
+    if (result != VK_SUCCESS) return vulkanError(result, "vkCreatePipelineLayout");
+  }
+  return {};
+}
+
+Result<void> Recorder::createSets(uint32_t slotCount) {
+  const Device& device = context.device;
+  std::array<VkDescriptorPoolSize, 4> sizes{{{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+                                             {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
+                                             {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},
+                                             {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 0}}};
+  const auto count = [&](VkDescriptorType type, uint32_t descriptors) {
+    for (VkDescriptorPoolSize& size : sizes)
+      if (size.type == type) size.descriptorCount += descriptors;
+  };
+  for (const BindingGroup& group : groups_)
+    for (size_t i = 0; i < passes_.resources.size(); ++i)
+      if (group.resources & bit(i)) count(descriptorType(passes_.resources[i].kind), slotCount);
+  count(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textureCount_ * slotCount * passes_.texturePages);
+  sizes[0].descriptorCount = std::max(1u, sizes[0].descriptorCount);
+  const auto end = std::partition(sizes.begin(), sizes.end(),
+                                  [](const VkDescriptorPoolSize& size) { return size.descriptorCount != 0; });
+
+  std::pmr::vector<VkDescriptorSetLayout> layouts(&context.host());
+  for (uint32_t slot = 0; slot < slotCount; ++slot)
+    for (const BindingGroup& group : groups_) layouts.push_back(group.setLayout);
+  sets_.resize(layouts.size());
+  textureSets_.resize(textureCount_ ? size_t(slotCount) * passes_.texturePages : 0);
+  VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+  poolInfo.maxSets = static_cast<uint32_t>(sets_.size() + textureSets_.size());
+  poolInfo.poolSizeCount = static_cast<uint32_t>(end - sizes.begin());
+  poolInfo.pPoolSizes = sizes.data();
+  VkResult result = device.vk.CreateDescriptorPool(device.device, &poolInfo, nullptr, &pool_);
+  if (result != VK_SUCCESS) return vulkanError(result, "vkCreateDescriptorPool");
+  const auto allocate = [&](std::pmr::vector<VkDescriptorSet>& sets) {
+    VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
+    info.descriptorPool = pool_;
+    info.descriptorSetCount = static_cast<uint32_t>(sets.size());
+    info.pSetLayouts = layouts.data();
+    return sets.empty() ? VK_SUCCESS : device.vk.AllocateDescriptorSets(device.device, &info, sets.data());
+  };
+  result = allocate(sets_);
+  if (result != VK_SUCCESS) return vulkanError(result, "vkAllocateDescriptorSets");
+  layouts.assign(textureSets_.size(), textureLayout_);
+  result = allocate(textureSets_);
+  if (result != VK_SUCCESS) return vulkanError(result, "vkAllocateDescriptorSets");
+  return {};
+}
+
+} // namespace gpgp::core
