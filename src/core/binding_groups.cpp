@@ -122,6 +122,7 @@ Result<void> Recorder::createLayouts() {
 
 Result<void> Recorder::createSets(uint32_t slotCount) {
   const Device& device = context.device;
+  emptySlot_ = slotCount;
   std::array<VkDescriptorPoolSize, 4> sizes{{{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
                                              {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
                                              {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},
@@ -132,17 +133,17 @@ Result<void> Recorder::createSets(uint32_t slotCount) {
   };
   for (const BindingGroup& group : groups_)
     for (size_t i = 0; i < passes_.resources.size(); ++i)
-      if (group.resources & bit(i)) count(descriptorType(passes_.resources[i].kind), slotCount);
-  count(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textureCount_ * slotCount * passes_.texturePages);
+      if (group.resources & bit(i)) count(descriptorType(passes_.resources[i].kind), slotCount + 1);
+  count(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textureCount_ * (slotCount * passes_.texturePages + 1));
   sizes[0].descriptorCount = std::max(1u, sizes[0].descriptorCount);
   const auto end = std::partition(sizes.begin(), sizes.end(),
                                   [](const VkDescriptorPoolSize& size) { return size.descriptorCount != 0; });
 
   std::pmr::vector<VkDescriptorSetLayout> layouts(&context.host());
-  for (uint32_t slot = 0; slot < slotCount; ++slot)
+  for (uint32_t slot = 0; slot <= slotCount; ++slot)
     for (const BindingGroup& group : groups_) layouts.push_back(group.setLayout);
   sets_.resize(layouts.size());
-  textureSets_.resize(textureCount_ ? size_t(slotCount) * passes_.texturePages : 0);
+  textureSets_.resize(textureCount_ ? size_t(slotCount) * passes_.texturePages + 1 : 0);
   VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   poolInfo.maxSets = static_cast<uint32_t>(sets_.size() + textureSets_.size());
   poolInfo.poolSizeCount = static_cast<uint32_t>(end - sizes.begin());

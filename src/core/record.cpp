@@ -196,6 +196,10 @@ void Recorder::writeDescriptors(uint32_t slot, uint32_t first, uint32_t groupCou
   std::array<VkDescriptorBufferInfo, kMaxResources> buffers;
   std::array<VkDescriptorImageInfo, kMaxResources> images;
   uint32_t count = 0;
+  // Images and textures without a view, by resource: passes that use them are skipped. But lavapipe looks at all
+  // descriptors of a set when it is bound, and the images of an earlier recording may be gone.
+  uint64_t leftOut = 0;
+  const VkDescriptorSet textureSet = textureSets_.empty() ? VK_NULL_HANDLE : textureSets_[slot * passes_.texturePages];
   for (uint32_t i = 0; i < passes_.resources.size(); ++i) {
     const Resource& resource = passes_.resources[i];
     const Binding& binding = bindings[i];
@@ -205,14 +209,20 @@ void Recorder::writeDescriptors(uint32_t slot, uint32_t first, uint32_t groupCou
     buffers[i] = {constants_.handle(), resource.written ? unusedOffset_ : 0,
                   resource.written ? kUnusedBytes : std::clamp<VkDeviceSize>(passes_.constantsBytes, 16, kUnusedBytes)};
     if (resource.kind == ResourceKind::image) {
-      if (!binding.image || !binding.image->view) continue; // passes that use it are skipped
+      if (!binding.image || !binding.image->view) {
+        leftOut |= uint64_t(1) << i;
+        continue;
+      }
       images[i] = {VK_NULL_HANDLE, binding.image->view, VK_IMAGE_LAYOUT_GENERAL};
       write.pImageInfo = &images[i];
       write.pBufferInfo = nullptr;
     } else if (resource.kind == ResourceKind::texture) {
-      if (!binding.texture.imageView) continue; // passes that use it are skipped, or textures come in pages
+      if (!binding.texture.imageView) { // or textures come in pages
+        leftOut |= uint64_t(1) << i;
+        continue;
+      }
       images[i] = binding.texture;
-      write.dstSet = textureSets_[slot * passes_.texturePages];
+      write.dstSet = textureSet;
       write.dstBinding = i - firstTexture_;
       write.pImageInfo = &images[i];
       write.pBufferInfo = nullptr;
@@ -239,7 +249,8 @@ void Recorder::writeDescriptors(uint32_t slot, uint32_t first, uint32_t groupCou
   }
   for (uint32_t group = first; group < first + groupCount; ++group) {
     std::array<VkWriteDescriptorSet, kMaxResources> ofGroup;
-    uint32_t written = 0;
+    std::array<VkCopyDescriptorSet, kMaxResources> emptied;
+    uint32_t written = 0, emptiedCount = 0;
     for (uint32_t i = 0; i < count; ++i) {
       const bool isTexture = writes[i].dstSet != VK_NULL_HANDLE;
       if (isTexture ? group != first : !(groups_[group].resources >> writes[i].dstBinding & 1)) continue;
@@ -247,7 +258,23 @@ void Recorder::writeDescriptors(uint32_t slot, uint32_t first, uint32_t groupCou
       if (!isTexture) ofGroup[written].dstSet = setOf(slot, group);
       ++written;
     }
-    context.device.vk.UpdateDescriptorSets(context.device.device, written, ofGroup.data(), 0, nullptr);
+    for (uint32_t i = 0; leftOut >> i; ++i) {
+      if (!(leftOut >> i & 1)) continue;
+      const bool isTexture = passes_.resources[i].kind == ResourceKind::texture;
+      if (isTexture ? group != first : !(groups_[group].resources >> i & 1)) continue;
+      const uint32_t binding = isTexture ? i - firstTexture_ : i;
+      emptied[emptiedCount++] = {VK_STRUCTURE_TYPE_COPY_DESCRIPTOR_SET,
+                                 nullptr,
+                                 isTexture ? textureSets_.back() : setOf(emptySlot_, group),
+                                 binding,
+                                 0,
+                                 isTexture ? textureSet : setOf(slot, group),
+                                 binding,
+                                 0,
+                                 1};
+    }
+    context.device.vk.UpdateDescriptorSets(context.device.device, written, ofGroup.data(), emptiedCount,
+                                           emptied.data());
   }
 }
 

@@ -18,10 +18,10 @@ for target in "${targets[@]}"; do
   work=build/fuzz/corpus/$target
   mkdir -p "$work"
   # What is found goes into the first folder; the others are what tests have for all parsers: each takes what it can.
-  corpus=(tests/data/{grammars,graphs,lsystems,cga,svg,lottie,path_data,css,text} samples/gml)
+  corpus=(tests/data/{grammars,graphs,lsystems,cga,svg,lottie,path_data,css,text,cases} samples/{gml,cga,grammars})
   log=build/fuzz/$target.log
   if "build/fuzz/$target" "$work" "${corpus[@]}" -max_total_time="$seconds" -max_len=16384 -timeout=20 \
-    -rss_limit_mb=3000 -artifact_prefix="build/fuzz/$target-" >"$log" 2>&1; then
+    -rss_limit_mb=3000 -close_fd_mask=2 -artifact_prefix="build/fuzz/$target-" >"$log" 2>&1; then
     state=OK
   else
     state="FAILED, see $log"

@@ -29,7 +29,7 @@ done
   -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" "${options[@]}"
 "$cmake" --build "$scratch"
 "$scratch/consumer"
-if [[ " $* " == *" spawn "* ]]; then set -- "$@" spawn_builder lsystem tiles fit scatter; fi # services in several headers
+if [[ " $* " == *" spawn "* ]]; then set -- "$@" spawn_builder lsystem tiles fit scatter detail; fi # services in several headers
 if [[ " $* " == *" vector "* ]]; then set -- "$@" ui svg lottie; fi
 if [[ " $* " == *" visibility "* ]]; then set -- "$@" atlas; fi
 symbols=("$tests/../abi/symbols_test.sh" "$nm" "$source/include" "$tests/../abi")

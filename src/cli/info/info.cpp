@@ -1,6 +1,7 @@
 // `gpgp info`: the devices, what gpgp needs and could use of one, and which optional paths that means.
 #include "cli/info/pipelines.h"
 #include "cli/shared/command.h"
+#include "cli/shared/session.h"
 #include "host/device.h"
 
 #include <array>
@@ -60,8 +61,7 @@ Json deviceJson(const host::DeviceSummary& device) {
           {"apiVersion", versionText(device.apiVersion)}};
 }
 
-Outcome info(const CommonOptions& options) {
-  host::HeadlessDevice device(host::DeviceOptions{.device = options.device, .validation = options.validate});
+Outcome info(host::HeadlessDevice& device) {
   const std::vector<host::DeviceSummary> devices = host::listDevices();
   GpgpRequirementsInfo query = GPGP_REQUIREMENTS_INFO_INIT;
   query.instance = device.instance();
@@ -143,9 +143,10 @@ Work addInfo(CLI::App& app) {
   command->footer("\nExamples:\n  gpgp info\n  gpgp info --device 1\n  gpgp info --json | jq .features\n"
                   "  gpgp info --pipelines");
   return [pipelines](const CommonOptions& options) {
-    if (!*pipelines) return info(options);
     host::HeadlessDevice device(host::DeviceOptions{.device = options.device, .validation = options.validate});
-    return listPipelines(device);
+    Outcome outcome = *pipelines ? listPipelines(device) : info(device);
+    checkValidation(device);
+    return outcome;
   };
 }
 

@@ -66,8 +66,7 @@ void Session::onMessage(void* userData, const GpgpMessage* message) {
 
 Session::Session(const CommonOptions& options)
     : device_(host::DeviceOptions{.device = options.device, .validation = options.validate}), frames_(device_, 2),
-      busy_(device_), validate_(options.validate), dumpPass_(options.dumpPass), dumpFolder_(options.dumpFolder),
-      json_(options.json) {
+      busy_(device_), dumpPass_(options.dumpPass), dumpFolder_(options.dumpFolder), json_(options.json) {
   GpgpContextCreateInfo info = device_.contextCreateInfo();
   info.label = "gpgp command";
   info.messageFn = onMessage;
@@ -183,9 +182,8 @@ GpuTimes Session::run(GpgpRecorder recorder, const char* label, uint32_t repeat,
   return times;
 }
 
-void Session::checkValidation() {
-  if (!validate_) return;
-  const std::vector<std::string> messages = device_.takeValidationMessages();
+void checkValidation(host::HeadlessDevice& device) {
+  const std::vector<std::string> messages = device.takeValidationMessages();
   for (const std::string& message : messages) std::fprintf(stderr, "validation: %s\n", message.c_str());
   if (!messages.empty())
     throw Failure("the validation layer had " + std::to_string(messages.size()) + " messages (above)");

@@ -29,6 +29,9 @@ template <class Report> struct Measured {
   Report report{};
 };
 
+/// Throws Failure where the validation layer had anything to say, and prints that. Without the layer it has not.
+void checkValidation(host::HeadlessDevice& device);
+
 class Session {
 public:
   explicit Session(const CommonOptions& options);
@@ -75,8 +78,7 @@ public:
   GpuTimes time(GpgpRecorder recorder, const char* label, uint32_t repeat, const Record& record) {
     return run(recorder, label, repeat, record, [] {});
   }
-  /// Throws Failure where the validation layer had anything to say.
-  void checkValidation();
+  void checkValidation() { cli::checkValidation(device_); }
 
 private:
   GpuTimes run(GpgpRecorder recorder, const char* label, uint32_t repeat, const Record& record,
@@ -88,7 +90,6 @@ private:
   Context context_;
   host::FrameRing frames_;
   host::BusyWork busy_;
-  bool validate_;
   std::string dumpPass_, dumpFolder_;
   bool json_;
 };
