@@ -35,6 +35,8 @@ typedef struct GpgpLsystemSource {
   /** Receives all errors, warnings and notes, sorted by place: at most 1000 of each, and then how many were omitted. */
   GpgpCompileMessageFn messageFn;
   void* messageUserData;
+  /** Of a text that has several systems with names, as files of Fractint do, the one to compile. NULL: the first. */
+  const char* start;
 } GpgpLsystemSource;
 #define GPGP_LSYSTEM_SOURCE_INIT GPGP_INIT(GpgpLsystemSource, GPGP_STRUCTURE_LSYSTEM_SOURCE)
 

@@ -188,23 +188,36 @@ Outcome spawnCga(const CgaOptions& options, const CommonOptions& common) {
     throw Usage("--repeat and --schedule are for what derives on the GPU; " + why);
 
   // Axioms of one rule after the other; each rule has a program, for which attributes it needs.
-  std::map<std::string, std::vector<Axiom>> byRule;
-  for (size_t i = 0; i < start.axioms.size() && !onGpu; ++i) byRule[start.rules[i]].push_back(start.axioms[i]);
+  struct OfRule {
+    std::vector<Axiom> axioms;
+    std::optional<Program> own;
+  };
+  std::map<std::string, OfRule> byRule;
+  for (size_t i = 0; i < start.axioms.size() && !onGpu; ++i) byRule[start.rules[i]].axioms.push_back(start.axioms[i]);
+  for (auto& [rule, part] : byRule) {
+    if (rule.empty()) continue;
+    Messages same; // as above
+    compile.start = rule;
+    part.own = spawn::cga::compile(text, compile, same);
+  }
   Derivation all;
   Messages messages;
-  double milliseconds = 0;
-  for (const auto& [rule, axioms] : byRule) {
-    std::optional<Program> other;
-    if (!rule.empty()) {
-      Messages same; // as above
-      compile.start = rule;
-      other = spawn::cga::compile(text, compile, same);
+  const auto begin = std::chrono::steady_clock::now();
+  spawn::cga::Surroundings surroundings;
+  if (program->asksAround && byRule.size() > 1) { // axioms see those of other rules as well
+    for (const auto& [rule, part] : byRule) {
+      spawn::cga::addSurroundings(part.own ? *part.own : *program, part.axioms, derive, surroundings);
+      derive.firstAxiom += static_cast<uint32_t>(part.axioms.size());
     }
-    const auto begin = std::chrono::steady_clock::now();
-    Derivation part = spawn::cga::derive(other ? *other : *program, axioms, derive, messages);
-    milliseconds += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-    join(all, std::move(part));
+    surroundings.build();
+    derive.surroundings = &surroundings;
+    derive.firstAxiom = 0;
   }
+  for (const auto& [rule, part] : byRule) {
+    join(all, spawn::cga::derive(part.own ? *part.own : *program, part.axioms, derive, messages));
+    derive.firstAxiom += static_cast<uint32_t>(part.axioms.size());
+  }
+  double milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   const std::optional<ErrorsShown> wrongLater = print(messages);
   if (gpu) {
     all = std::move(gpu->all);

@@ -18,8 +18,8 @@ constexpr const char* kOfAll[] = {"--axioms", "--axiom-file", "--axiom-size", "-
 constexpr const char* kOfCga[] = {"--attr",         "--attributes",   "--field",     "--style",      "--geographic",
                                   "--start",        "--schedule",     "--max-depth", "--max-shapes", "--max-faces",
                                   "--max-vertices", "--max-geometry", "--max-work"};
-constexpr const char* kOfLsystems[] = {"--set",           "--interval",  "--string",   "--max-modules",
-                                       "--max-instances", "--out-nodes", "--instanced"};
+constexpr const char* kOfLsystems[] = {"--set",           "--interval",  "--string",    "--max-modules",
+                                       "--max-instances", "--out-nodes", "--instanced", "--start"};
 /// Of both languages, what grammars do not have.
 constexpr const char* kNotOfGrammars[] = {"--attr",      "--attributes",   "--style",        "--geographic",
                                           "--max-faces", "--max-vertices", "--max-geometry", "--max-work",
@@ -85,6 +85,7 @@ Outcome spawnLsystemFile(const SpawnOptions& options, const CommonOptions& commo
       {options.size[0], 0, options.size[2]}, options.seed, {GPGP_AXIOM_DEFAULT_START}, options.interval};
   LsystemOptions own;
   own.file = options.grammars[0];
+  own.start = options.start;
   own.set = options.set;
   own.axioms = options.axiomFile.empty() ? axiomGrid(std::max(options.axioms, 1u), options.spacing, defaults)
                                          : readAxioms(options.axiomFile, {}, defaults);

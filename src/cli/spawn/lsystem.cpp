@@ -75,7 +75,7 @@ std::vector<uint32_t> compile(const LsystemOptions& options) {
     into = host::readText(file.string());
     return true;
   };
-  auto words = spawn::lsystem::compile(text, overrides, diagnostics, read);
+  auto words = spawn::lsystem::compile(text, overrides, diagnostics, read, options.start);
   report(diagnostics, options.file);
   if (!words) throw Failure(options.file + ": no L-system");
   return std::move(*words);
@@ -152,7 +152,7 @@ std::string difference(const spawn::lsystem::Drawn& drawn, std::span<const GpgpI
 
 bool isLsystem(const std::string& file) {
   const auto ending = std::filesystem::path(file).extension();
-  return ending == ".lsys" || ending == ".l" || ending == ".ls";
+  return ending == ".lsys" || ending == ".l" || ending == ".ls" || ending == ".lpy";
 }
 
 Outcome spawnLsystem(const LsystemOptions& options, const CommonOptions& common) {

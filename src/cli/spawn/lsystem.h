@@ -12,6 +12,7 @@ namespace gpgp::cli {
 
 struct LsystemOptions {
   std::string file;
+  std::string start; ///< of a file of several systems, its name; empty: the first
   std::vector<std::string> set;
   std::vector<GpgpAxiom> axioms;
   uint32_t repeat = 1;

@@ -73,8 +73,10 @@ void addSpawnOptions(CLI::App& command, SpawnOptions& options) {
   command.add_option("--seed", options.seed, "Random seed; axiom i has seed S + i")->capture_default_str();
   addVariables(command, options.set);
   command
-      .add_option("--start", options.start,
-                  "The rule to start at (default: the first axiom's; of a .cga file @StartRule's, else the first)")
+      .add_option(
+          "--start", options.start,
+          "The rule to start at (default: the first axiom's; of a .cga file @StartRule's, else the first); of an "
+          "L-system's file with several, its name")
       ->type_name("RULE");
   command.add_option("--attr", options.attributes, "Set an attr of a .cga file; may be repeated")
       ->type_name("NAME=VALUE")

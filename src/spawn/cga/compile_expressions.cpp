@@ -313,8 +313,9 @@ Type Compiler::name(const Expression& e, const Context& context, bool selectorFi
     if (!function->isMath && function->number >= static_cast<uint32_t>(Function::geometry_isTagged_) &&
         function->number <= static_cast<uint32_t>(Function::isTagged_))
       program_.asksOwnTags |= mayBeOwnTag(e);
-    asksContext_ |= !function->isMath && function->number >= static_cast<uint32_t>(Function::inside_) &&
-                    function->number <= static_cast<uint32_t>(Function::contextCompare_);
+    if (!function->isMath && function->number >= static_cast<uint32_t>(Function::inside_) &&
+        function->number <= static_cast<uint32_t>(Function::contextCompare_))
+      contextQuery(e, static_cast<Function>(function->number));
     arguments(e.text, e.arguments, context);
     source(context, e.place);
     emit(function->isMath ? kCgaMathCode : kCgaFunctionCode,
@@ -347,6 +348,19 @@ Type Compiler::name(const Expression& e, const Context& context, bool selectorFi
   unknownName(e, context);
   nothing();
   return Type::unknown;
+}
+
+/// Notes which shapes a query for those around asks for.
+void Compiler::contextQuery(const Expression& e, Function function) {
+  asksContext_ = true;
+  const auto isOf = [&](size_t i, std::string_view text) {
+    return i < e.arguments.size() && !e.arguments[i]->isCall && e.arguments[i]->text == text;
+  };
+  if (isOf(0, "intra")) return;
+  program_.asksAround = true;
+  const Expression* label = e.arguments.size() > 1 ? e.arguments[1].get() : nullptr;
+  const bool isLabelled = label && label->kind == Expression::Kind::string && !label->text.empty();
+  if (function <= Function::touches_) program_.asksUnlabelled |= !isLabelled;
 }
 
 /// Notes which field is read where its name is a string.

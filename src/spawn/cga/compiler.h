@@ -93,6 +93,7 @@ private:
   bool literal(const Entity& entity, Type& type);
   Module* resolve(const std::string& path, const Context& context, std::string& last, bool& isMissing);
   void field(const Expression& e, const Context& context);
+  void contextQuery(const Expression& e, Function function);
   void unknownName(const Expression& e, const Context& context);
   void nothing() { emit(shader::kCgaPushFloatCode, {0}); }
 

@@ -16,6 +16,7 @@ struct AxiomBlock {
   Messages messages;
 };
 
+constexpr size_t kBlock = 32;      ///< axioms; of fixed size, so that sums are added in the same order by any threads
 constexpr uint32_t kMostJobs = 64; ///< each has a machine of its own, some MiB
 
 size_t threadsOf(const DeriveOptions& options) {
@@ -27,6 +28,13 @@ void runOnThreads(size_t count, const std::function<void()>& work) {
   for (size_t i = 1; i < count; ++i) threads.emplace_back(work);
   work();
   for (std::thread& thread : threads) thread.join();
+}
+
+void inParallel(size_t blocks, const DeriveOptions& options, const std::function<void()>& work) {
+  if (options.parallelFor)
+    options.parallelFor(static_cast<uint32_t>(std::min<size_t>(blocks, kMostJobs)), work);
+  else
+    runOnThreads(std::min(threadsOf(options), blocks), work);
 }
 
 /// Where a part's strings stand in all: the program's as they are, others once.
@@ -74,9 +82,32 @@ void append(Derivation& all, Derivation&& part, const std::vector<uint32_t>& pla
   all.work = std::max(all.work, part.work);
 }
 
-Derivation derive(const Program& program, const std::vector<Axiom>& axioms, const DeriveOptions& options,
+void addSurroundings(const Program& program, const std::vector<Axiom>& axioms, const DeriveOptions& options,
+                     Surroundings& surroundings) {
+  std::vector<std::vector<Occluder>> shapes(axioms.size());
+  std::atomic<size_t> next{0};
+  inParallel((axioms.size() + kBlock - 1) / kBlock, options, [&] {
+    std::unique_ptr<Deriver> deriver; // large
+    Messages same;                    // as those that the derivation itself gives
+    for (size_t first = kBlock * next++; first < axioms.size(); first = kBlock * next++) {
+      if (!deriver) deriver = std::make_unique<Deriver>(program, options);
+      for (size_t i = first; i < std::min(axioms.size(), first + kBlock); ++i)
+        shapes[i] = deriver->seen(axioms[i], static_cast<uint32_t>(i), same);
+    }
+  });
+  for (size_t i = 0; i < axioms.size(); ++i)
+    surroundings.add(options.firstAxiom + static_cast<uint32_t>(i), std::move(shapes[i]));
+}
+
+Derivation derive(const Program& program, const std::vector<Axiom>& axioms, const DeriveOptions& given,
                   Messages& messages) {
-  constexpr size_t kBlock = 32; // axioms; of fixed size, so that sums are added in the same order by any threads
+  DeriveOptions options = given;
+  Surroundings surroundings;
+  if (program.asksAround && !options.surroundings && axioms.size() > 1) {
+    addSurroundings(program, axioms, options, surroundings);
+    surroundings.build();
+    options.surroundings = &surroundings;
+  }
   std::vector<AxiomBlock> blocks((axioms.size() + kBlock - 1) / kBlock);
   std::atomic<size_t> next{0};
   const auto work = [&] {
@@ -88,10 +119,7 @@ Derivation derive(const Program& program, const std::vector<Axiom>& axioms, cons
         deriver->run(axioms[i], static_cast<uint32_t>(i), blocks[b].derivation, blocks[b].messages);
     }
   };
-  if (options.parallelFor)
-    options.parallelFor(static_cast<uint32_t>(std::min<size_t>(blocks.size(), kMostJobs)), work);
-  else
-    runOnThreads(std::min(threadsOf(options), blocks.size()), work);
+  inParallel(blocks.size(), options, work);
   Derivation result;
   for (AxiomBlock& block : blocks) {
     if (result.names.empty())

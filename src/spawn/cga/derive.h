@@ -5,6 +5,7 @@
 #pragma once
 #include "spawn/cga/modules.h"
 #include "spawn/cga/program.h"
+#include "spawn/cga/surroundings.h"
 #include "spawn/shared/layout.h"
 
 #include <functional>
@@ -81,6 +82,10 @@ struct DeriveOptions {
   /// Reads a file for i(); false: it cannot, and text says why.
   std::function<bool(const std::string& path, Asset& asset, std::string& text)> loadAsset;
   bool assetsAreFiles = true; ///< loadAsset gets paths of files on the disk alone
+  /// Shapes that context queries see beyond their axiom; null: derive() derives all axioms once more to find them,
+  /// where the program asks.
+  const Surroundings* surroundings = nullptr;
+  uint32_t firstAxiom = 0; ///< the number that the first axiom has there
 };
 
 /// A shape in which a derivation ends.
@@ -128,6 +133,11 @@ struct Derivation {
 /// Messages get what went wrong on the way, once a kind, with its place; exceeded limits are errors.
 Derivation derive(const Program& program, const std::vector<Axiom>& axioms, const DeriveOptions& options,
                   Messages& messages);
+
+/// Adds what context queries of other axioms may see of these, whose numbers begin at options.firstAxiom: what they
+/// derive to where no query looks beyond its own axiom.
+void addSurroundings(const Program& program, const std::vector<Axiom>& axioms, const DeriveOptions& options,
+                     Surroundings& surroundings);
 
 /// A value that an attribute has where nobody sets it.
 struct FirstValue {

@@ -84,6 +84,8 @@ std::vector<FirstValue> Deriver::firstValues(const Axiom& axiom, Messages& messa
 void Deriver::run(const Axiom& axiom, uint32_t number, Derivation& result, Messages& messages) {
   axiom_ = &axiom;
   messages_ = &messages;
+  around_ = options_.surroundings;
+  axiomNumber_ = options_.firstAxiom + number;
   for (;;) {
     clear();
     const size_t firstLeaf = result.leaves.size(), firstVertex = result.vertices.size();
@@ -97,15 +99,7 @@ void Deriver::run(const Axiom& axiom, uint32_t number, Derivation& result, Messa
     if (options_.keepScopes) result.scopes.resize(firstLeaf);
     result.vertices.resize(firstVertex);
     result.indices.resize(firstIndex);
-    const uint32_t most = static_cast<uint32_t>(
-        std::clamp<uint64_t>(uint64_t{options_.maxGeometryMiB} << 18, kFirstPoolWords, kMostPoolWords));
-    if (poolWords_ >= most) {
-      fail(ruleAndOperation() + ": the meshes of one axiom need more than " + std::to_string(most >> 18) +
-           " MiB; maxGeometryMiB (--max-geometry) allows more");
-      return;
-    }
-    poolWords_ = static_cast<uint32_t>(std::min<uint64_t>(4ull * poolWords_, most));
-    pool_ = GeometryPool(poolWords_, std::min(poolWords_, kMostWorkWords));
+    if (!growPool()) return;
   }
   result.shapes += shapes_;
   result.depth = std::max(result.depth, deepest_);
@@ -120,6 +114,40 @@ void Deriver::run(const Axiom& axiom, uint32_t number, Derivation& result, Messa
   for (const uint32_t print : prints_)
     if (result.prints.size() < Derivation::kMostPrints) result.prints.push_back(strings_.text(print));
   result.printed += printCount_;
+}
+
+bool Deriver::growPool() {
+  const uint32_t most = static_cast<uint32_t>(
+      std::clamp<uint64_t>(uint64_t{options_.maxGeometryMiB} << 18, kFirstPoolWords, kMostPoolWords));
+  if (poolWords_ >= most) {
+    fail(ruleAndOperation() + ": the meshes of one axiom need more than " + std::to_string(most >> 18) +
+         " MiB; maxGeometryMiB (--max-geometry) allows more");
+    return false;
+  }
+  poolWords_ = static_cast<uint32_t>(std::min<uint64_t>(4ull * poolWords_, most));
+  pool_ = GeometryPool(poolWords_, std::min(poolWords_, kMostWorkWords));
+  return true;
+}
+
+std::vector<Occluder> Deriver::seen(const Axiom& axiom, uint32_t number, Messages& messages) {
+  axiom_ = &axiom;
+  messages_ = &messages;
+  around_ = nullptr;
+  axiomNumber_ = options_.firstAxiom + number;
+  std::vector<Occluder> shapes;
+  unlabelled_ = program_.asksUnlabelled ? &shapes : nullptr;
+  for (;;) {
+    clear();
+    shapes.clear();
+    if (!start(axiom, number)) break;
+    derive();
+    for (const Shape& leaf : leaves_)
+      if (!noRoom_) noteUnlabelled(leaf.form);
+    if (!noRoom_ || !growPool()) break;
+  }
+  unlabelled_ = nullptr;
+  for (Labelled& shape : labels_) shapes.push_back({strings_.text(shape.label), std::move(shape.hull), shape.area});
+  return shapes;
 }
 
 bool Deriver::start(const Axiom& axiom, uint32_t number) {

@@ -45,6 +45,8 @@ public:
   /// Adds what comes of an axiom.
   void run(const Axiom& axiom, uint32_t number, Derivation& result, Messages& messages);
   std::vector<FirstValue> firstValues(const Axiom& axiom, Messages& messages);
+  /// What context queries of other axioms may see of one. Its own queries look no farther than the axiom.
+  std::vector<Occluder> seen(const Axiom& axiom, uint32_t number, Messages& messages);
 
 private:
   struct Change {
@@ -119,6 +121,7 @@ private:
   // --- deriver.cpp ---
   void clear(); ///< what the axiom before left
   bool start(const Axiom& axiom, uint32_t number);
+  bool growPool(); ///< false: it is as large as it may be, and the derivation has failed
   void attributes(const Axiom& axiom, const std::vector<uint32_t>& order);
   void derive();
   bool runRule(const Shape& shape);
@@ -232,6 +235,14 @@ private:
   std::string findFile(const std::string& path);
   std::string soughtFile(const std::string& path);
   CgaValue table(const Arguments& a, bool asStrings);
+  struct ContextQuery {
+    bool isIntra = true, isInter = true;
+    std::string label; ///< empty: all shapes
+  };
+  ContextQuery contextQuery(const Arguments& a, uint32_t labelAt);
+  bool sees(const ContextQuery& query, const Labelled& other) const;
+  bool comparesWith(const Hull& other); ///< counts the work; false: there is none left
+  void noteUnlabelled(const Form& form);
   CgaValue context(const Arguments& a, bool (*query)(const Hull&, const Hull&));
   const Hull& ownHull();
   vec3 euler(const vec3& x, const vec3& y, const vec3& z) const;
@@ -276,6 +287,9 @@ private:
   std::vector<ArrayValue> arrays_;
   size_t arrayValues_ = 0; ///< of all arrays
   std::vector<Labelled> labels_;
+  const Surroundings* around_ = nullptr;         // of the axiom that runs
+  uint32_t axiomNumber_ = 0;                     // its own there
+  std::vector<Occluder>* unlabelled_ = nullptr;  // where seen() wants them
   std::vector<uint32_t> tagNames_;               ///< strings, by their bit from kTagUser on
   std::unordered_map<uint32_t, Report> reports_; // by string
   std::vector<uint32_t> prints_;

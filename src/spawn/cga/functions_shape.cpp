@@ -283,25 +283,59 @@ bool mayMeet(const Bounds& a, const Bounds& b, float slack) {
 }
 } // namespace
 
-/// Among the labelled shapes of this axiom that were there when this generation of shapes began or came earlier in it.
+Deriver::ContextQuery Deriver::contextQuery(const Arguments& a, uint32_t labelAt) {
+  ContextQuery query;
+  uint32_t label = labelAt;
+  if (a.count && labelAt) {
+    const std::string_view target = word(a[0]);
+    query.isIntra = target != "inter";
+    query.isInter = target != "intra";
+    if (target != "intra" && target != "inter" && target != "all") {
+      if (a.count == 1 && a[0].type == kCgaString)
+        label = 0; // of a query that has nothing but a label
+      else
+        warn("context target", "context queries look at intra, inter or all, not at '" + std::string(target) + "'");
+    }
+  }
+  if (label < a.count) query.label = text(a[label]);
+  return query;
+}
+
+/// Of shapes of this axiom that were there when this generation of shapes began or came earlier in it.
+bool Deriver::sees(const ContextQuery& query, const Labelled& other) const {
+  return query.isIntra && other.key != shape_.key && (query.label.empty() || strings_.text(other.label) == query.label);
+}
+
+bool Deriver::comparesWith(const Hull& other) {
+  const Hull& own = ownHull();
+  return works(own.sizes.size() * other.points.size() + own.points.size() * other.sizes.size());
+}
+
+/// A closed shape that queries without a label see.
+void Deriver::noteUnlabelled(const Form& form) {
+  if (!unlabelled_ || form.mesh == 0 || !works(meshCorners(pool_, form.mesh)) || !isClosedSurface(pool_, form)) return;
+  unlabelled_->push_back({{}, makeHull(pool_, form), 0.0f});
+}
+
 CgaValue Deriver::context(const Arguments& a, bool (*query)(const Hull&, const Hull&)) {
   if (shape_.form.mesh == 0) return cgaBoolValue(false);
-  const CgaValue* label = nullptr;
-  for (uint32_t i = 0; i < a.count; ++i) {
-    const std::string_view w = word(a[i]);
-    if (w == "inter") return cgaBoolValue(false);
-    if (a[i].type == kCgaString) label = &a[i];
-  }
-  if (!label) warn("context", "context queries see the shapes that label() named, of the same axiom");
+  const ContextQuery asked = contextQuery(a, 1);
+  if (asked.label.empty() && asked.isIntra)
+    warn("context", "of their own axiom, context queries without a label see the shapes that label() named alone");
+  constexpr float kReach = 1e-3f;
   works(labels_.size());
   for (const Labelled& other : labels_) {
-    if (other.key == shape_.key || (label && other.label != label->bits)) continue;
-    if (!mayMeet(other.hull.bounds, ownHull().bounds, 1e-3f)) continue;
-    if (!works(ownHull().sizes.size() * other.hull.points.size() + ownHull().points.size() * other.hull.sizes.size()))
-      break;
+    if (!sees(asked, other) || !mayMeet(other.hull.bounds, ownHull().bounds, kReach)) continue;
+    if (!comparesWith(other.hull)) break;
     if (query(ownHull(), other.hull)) return cgaBoolValue(true);
   }
-  return cgaBoolValue(false);
+  if (!around_ || !asked.isInter) return cgaBoolValue(false);
+  bool isFound = false;
+  works(around_->visit(asked.label, axiomNumber_, ownHull().bounds, kReach, [&](const Occluder& other) {
+    isFound = comparesWith(other.hull) && query(ownHull(), other.hull);
+    return isFound || stopped_ ? -1.0f : kReach;
+  }));
+  return cgaBoolValue(isFound);
 }
 
 CgaValue Deriver::inside_(const Arguments& a) { return context(a, &spawn::inside); }
@@ -309,20 +343,28 @@ CgaValue Deriver::overlaps_(const Arguments& a) { return context(a, &spawn::over
 CgaValue Deriver::touches_(const Arguments& a) { return context(a, &spawn::touches); }
 
 CgaValue Deriver::minimumDistance_(const Arguments& a) {
+  const ContextQuery asked = contextQuery(a, a.count - 1);
   float least = kLargest;
-  const CgaValue& label = a[a.count - 1];
   for (const Labelled& other : labels_)
-    if (other.key != shape_.key && other.label == label.bits) {
-      if (!works(ownHull().sizes.size() * other.hull.points.size() + ownHull().points.size() * other.hull.sizes.size()))
-        break;
+    if (sees(asked, other)) {
+      if (!comparesWith(other.hull)) break;
       least = std::min(least, minimumDistance(ownHull(), other.hull));
     }
+  if (!around_ || !asked.isInter || asked.label.empty()) return floatValue(least);
+  works(around_->visit(asked.label, axiomNumber_, ownHull().bounds, least, [&](const Occluder& other) {
+    if (!comparesWith(other.hull)) return -1.0f;
+    least = std::min(least, minimumDistance(ownHull(), other.hull));
+    return least > 0 ? least : -1.0f;
+  }));
   return floatValue(least);
 }
 
 CgaValue Deriver::contextCount_(const Arguments& a) {
+  const ContextQuery asked = contextQuery(a, 1);
   uint32_t count = 0;
-  for (const Labelled& other : labels_) count += other.label == a[a.count - 1].bits;
+  if (asked.isIntra)
+    for (const Labelled& other : labels_) count += strings_.text(other.label) == asked.label;
+  if (around_ && asked.isInter && !asked.label.empty()) count += around_->count(asked.label, axiomNumber_);
   return floatValue(static_cast<float>(count));
 }
 

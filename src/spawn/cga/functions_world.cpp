@@ -206,11 +206,9 @@ bool Deriver::setTagsFromEdgeAttrs_(const Arguments&) {
 
 /// How many labelled shapes come before the current one.
 CgaValue Deriver::contextCompare_(const Arguments& a) {
-  if (word(a[0]) != "intra")
-    warn("context inter", "context queries see the labelled shapes of their own axiom alone, not '" +
-                              std::string(word(a[0])) + "' of them");
+  const ContextQuery asked = contextQuery(a, 1);
   const std::string_view by = word(a[2]);
-  if (shape_.form.mesh == 0 || word(a[0]) == "inter") return floatValue(0);
+  if (shape_.form.mesh == 0) return floatValue(0);
   // What is less comes first.
   const auto key = [&](const Bounds& b, float area) {
     return by == "world.northernmost"   ? b.low.z
@@ -235,8 +233,12 @@ CgaValue Deriver::contextCompare_(const Arguments& a) {
   uint32_t before = 0;
   works(labels_.size());
   for (const Labelled& other : labels_)
-    if (other.label == a[1].bits && a[1].type == kCgaString && key(other.hull.bounds, other.area) < own - slack)
-      ++before;
+    if (sees(asked, other) && key(other.hull.bounds, other.area) < own - slack) ++before;
+  if (around_ && asked.isInter && !asked.label.empty())
+    works(around_->visit(asked.label, axiomNumber_, ownHull().bounds, kLargest, [&](const Occluder& other) {
+      before += key(other.hull.bounds, other.area) < own - slack;
+      return kLargest;
+    }));
   return floatValue(static_cast<float>(before));
 }
 

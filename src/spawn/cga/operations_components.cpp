@@ -197,8 +197,8 @@ bool Deriver::setNormals_(const Arguments& a) {
   if (mode == "hard" || mode == "conform") shape_.softAngle = 0;
   if (mode == "soft") shape_.softAngle = 180;
   if (mode == "auto") shape_.softAngle = 30;
-  if (mode == "conform") warn("setNormals", "setNormals(conform) leaves faces as they are turned");
-  return true;
+  if (mode != "conform" || shape_.form.mesh == 0 || boxes_.is(shape_.form)) return true;
+  return check(conformNormals(pool_, shape_.form), "setNormals");
 }
 
 bool Deriver::softenNormals_(const Arguments& a) {
@@ -232,7 +232,9 @@ bool Deriver::roofRidge_(const Arguments& a) {
   }
   const Status status = ridgeRoof(pool_, shape_.form, byHeight, value);
   if (status == kGeometryBadArgument) {
-    warn("roofRidge", "roofRidge of faces with holes is not supported; the shape stays as it was");
+    warn("roofRidge",
+         "roofRidge of a face whose outline touches itself or a hole is not supported; the shape stays as it "
+         "was");
     return true;
   }
   return check(status, "roofRidge");

@@ -40,6 +40,7 @@ bool Deriver::taper_(const Arguments& a) {
 
 bool Deriver::offset_(const Arguments& a) {
   if (shape_.form.mesh == 0) return true;
+  noteUnlabelled(shape_.form);
   const std::string_view part = a.count > 1 ? word(a[1]) : std::string_view("all");
   if (!check(offset(pool_, shape_.form, number(a[0]),
                     part == "inside"   ? OffsetPart::Inside

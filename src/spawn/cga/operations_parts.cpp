@@ -255,6 +255,7 @@ bool Deriver::compMaterial(const Arguments& a, uint32_t table, uint32_t base) {
 }
 
 bool Deriver::comp_(const Arguments& a, uint32_t table, uint32_t base) {
+  noteUnlabelled(shape_.form);
   const std::string_view kindName = word(a[0]);
   Component kind = Component::Faces;
   if (kindName == "e") kind = Component::Edges;

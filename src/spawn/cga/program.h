@@ -92,6 +92,8 @@ struct Program {
   std::string folder;            ///< of the main file, with a / at its end: where paths of assets begin
   GraphText graph;               ///< where CompileOptions::graph asks for it
   bool asksOwnTags = false;      ///< for what extrusions and splits say of their faces
+  bool asksAround = false;       ///< by context queries that look beyond their axiom
+  bool asksUnlabelled = false;   ///< by some of them for shapes that label() did not name
 
   const SourceOf* sourceOf(uint32_t at) const;
 };

@@ -311,7 +311,7 @@ struct RoofOptions {
 Status roof(MeshPool& pool, Form& form, const RoofOptions& options);
 
 /// A roof of two planes over each face, whose ridge runs along x of the scope, over the middle. The outline may be
-/// concave; holes are kGeometryBadArgument. Tags and scope as roof().
+/// concave, and have holes. Tags and scope as roof(). kGeometryBadArgument: an outline touches itself or a hole.
 Status ridgeRoof(MeshPool& pool, Form& form, bool byHeight, float value);
 
 // ---------------------------------------------------------------- changes of the whole
@@ -323,6 +323,10 @@ enum AxisBits : uint32_t { AxisX = 1, AxisY = 2, AxisZ = 4 };
 /// Mirrors at the scope's middle, along axes (AxisBits). Faces still face outwards.
 Status mirror(MeshPool& pool, Form& form, uint32_t axes);
 Status reverseNormals(MeshPool& pool, Form& form);
+/// Reverses faces so that those that share an edge run along it in opposite directions. What hangs together then faces
+/// outwards where it is closed, else up in the frame; where it faces neither up nor down, most of its area stays as it
+/// is. Edges of more than two faces join nothing.
+Status conformNormals(MeshPool& pool, Form& form);
 /// The scope's axes become these; the geometry stays where it is, the scope is tight.
 Status alignScope(MeshPool& pool, Form& form, const Axes& axes);
 /// alignScopeToAxes: axis 0 x, 1 y, 2 z of `axes`: only this axis of the scope is aligned, the others as near as can

@@ -48,6 +48,77 @@ Status reverseNormals(MeshPool& pool, Form& form) {
   return attempt.end(rewrite(pool, form, true, false, [](vec3 p) { return p; }));
 }
 
+Status conformNormals(MeshPool& pool, Form& form) {
+  const uint count = form.mesh ? meshFaces(pool, form.mesh) : 0;
+  const std::vector<MeshEdge> edges = count ? meshEdges(pool, form) : std::vector<MeshEdge>();
+  struct Neighbour {
+    uint32_t face;
+    bool opposed; // as the two are turned
+  };
+  std::vector<std::vector<Neighbour>> neighbours(count);
+  std::vector<bool> isOpen(count, false), isReversed(count, false), isFound(count, false);
+  for (const MeshEdge& edge : edges) {
+    if (edge.faces == 2) {
+      neighbours[edge.face].push_back({edge.otherFace, edge.opposed});
+      neighbours[edge.otherFace].push_back({edge.face, edge.opposed});
+    } else {
+      isOpen[edge.face] = true; // of edges of several faces each part is open, too
+    }
+  }
+  // Twice the area of each face, along its normal, and where it lies.
+  std::vector<glm::dvec3> areas(count, glm::dvec3(0)), places(count);
+  const glm::dvec3 middle = count ? glm::dvec3(framePosition(pool, form, 0)) : glm::dvec3(0);
+  for (uint f = 0; f < count; ++f) {
+    const Face face = faceOf(pool, form.mesh, f);
+    for (uint l = 0; l < face.loops; ++l) {
+      const Loop loop = loopOf(pool, form.mesh, face.firstLoop + l);
+      const glm::dvec3 first = glm::dvec3(framePosition(pool, form, loop.firstCorner)) - middle;
+      if (l == 0) places[f] = first;
+      for (uint c = loop.firstCorner; c < loop.firstCorner + loop.corners; ++c) {
+        const glm::dvec3 a = glm::dvec3(framePosition(pool, form, c)) - middle;
+        const glm::dvec3 b = glm::dvec3(framePosition(pool, form, nextCorner(loop, c))) - middle;
+        areas[f] += glm::cross(a - first, b - first);
+      }
+    }
+  }
+  bool isAnyReversed = false;
+  for (uint first = 0; first < count; ++first) {
+    if (isFound[first]) continue;
+    std::vector<uint32_t> group{first};
+    isFound[first] = true;
+    bool isClosed = true;
+    double volume = 0, up = 0, kept = 0, all = 0;
+    for (size_t i = 0; i < group.size(); ++i) {
+      const uint32_t f = group[i];
+      const double sign = isReversed[f] ? -1 : 1, area = glm::length(areas[f]);
+      isClosed = isClosed && !isOpen[f];
+      volume += sign * glm::dot(places[f], areas[f]);
+      up += sign * areas[f].y;
+      kept += isReversed[f] ? 0 : area;
+      all += area;
+      for (const Neighbour& n : neighbours[f]) {
+        if (isFound[n.face]) continue;
+        isFound[n.face] = true;
+        isReversed[n.face] = isReversed[f] == n.opposed;
+        group.push_back(n.face);
+      }
+    }
+    const bool isVertical = std::fabs(up) < 1e-6 * all;
+    const bool turns = isClosed ? volume < 0 : isVertical ? kept < 0.5 * all : up < 0;
+    for (const uint32_t f : group) {
+      isReversed[f] = isReversed[f] != turns;
+      isAnyReversed = isAnyReversed || isReversed[f];
+    }
+  }
+  if (!isAnyReversed) return kGeometryOk;
+  Attempt attempt(pool);
+  Builder b = builderFor(pool, form.mesh, 1);
+  for (uint v = 0; v < meshVertices(pool, form.mesh); ++v)
+    addVertex(pool, b, scaled3(vertexPosition(pool, form.mesh, v), form.scale));
+  for (uint f = 0; f < count; ++f) copyFace(pool, b, form.mesh, f, 0, isReversed[f], 0);
+  return attempt.end(finishForm(pool, b, form, false));
+}
+
 Status alignScope(MeshPool& pool, Form& form, const Axes& axes) {
   const vec3 x = unit3(axes.x), y = unit3(along3(axes.y, x, -inner3(axes.y, x)));
   if (x == vec3(0.0f) || y == vec3(0.0f)) return kGeometryBadArgument;

@@ -591,8 +591,8 @@ private:
 } // namespace
 
 std::optional<std::vector<uint32_t>> compile(std::string_view text, std::span<const Override> overrides,
-                                             Diagnostics& diagnostics, const ReadFile& read) {
-  const File file = parse(text, diagnostics, overrides, read);
+                                             Diagnostics& diagnostics, const ReadFile& read, std::string_view start) {
+  const File file = parse(text, diagnostics, overrides, read, start);
   return Compiler(file, overrides, diagnostics).run();
 }
 

@@ -12,7 +12,9 @@
 namespace gpgp::spawn::lsystem {
 
 /// The words of the table; nothing where there were errors. A table that comes out is one that Table::load takes.
+/// start: of a file of several systems, the one to compile; empty: the first.
 std::optional<std::vector<uint32_t>> compile(std::string_view text, std::span<const Override> overrides,
-                                             Diagnostics& diagnostics, const ReadFile& read = {});
+                                             Diagnostics& diagnostics, const ReadFile& read = {},
+                                             std::string_view start = {});
 
 } // namespace gpgp::spawn::lsystem

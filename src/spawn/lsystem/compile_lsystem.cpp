@@ -40,7 +40,8 @@ GpgpResult GPGP_CALL gpgpCompileLsystem(const GpgpLsystemSource* source, GpgpBlo
     }
     spawn::Diagnostics diagnostics;
     const std::string_view text(source->text ? source->text : "", source->text ? source->size : 0);
-    const auto words = spawn::lsystem::compile(text, overrides, diagnostics);
+    const auto words =
+        spawn::lsystem::compile(text, overrides, diagnostics, {}, source->start ? source->start : std::string_view());
     for (const spawn::Diagnostic& d : diagnostics.sorted()) report(*source, d);
     if (!words) return GPGP_ERROR_INVALID_DATA;
     const GpgpBlob made = core::copyToBlob(std::as_bytes(std::span(*words)));

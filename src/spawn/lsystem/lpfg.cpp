@@ -65,11 +65,12 @@ constexpr std::string_view kInert[] = {"SetHead",      "SetHead3f",       "MoveT
 
 class Lpfg {
 public:
-  Lpfg(std::string_view text, Diagnostics& diagnostics, std::span<const Override> overrides, const ReadFile& read)
-      : diagnostics_(diagnostics), overrides_(overrides), line_(preprocessedC(text, diagnostics, read)),
-        execution_(diagnostics, values_),
+  /// isOfLpy: a way that ends without produce, but with what nproduce said, has produced that.
+  Lpfg(Line code, Diagnostics& diagnostics, std::span<const Override> overrides, bool isOfLpy)
+      : diagnostics_(diagnostics), overrides_(overrides), line_(std::move(code)), execution_(diagnostics, values_),
         r_(line_, 0, line_.text.size() - (line_.text.empty() ? 0 : 1), diagnostics, names_) {
     declared_.isC = true;
+    isOfLpy_ = isOfLpy;
     file_.systems.emplace_back();
     file_.segmentShape = GPGP_SHAPE_PRISM6;
     file_.isOfModeller = true;
@@ -291,7 +292,7 @@ private:
     if (middle) production.left = std::move(parts[0]);
     if (parts.size() > middle + 1) production.right = std::move(parts[middle + 1]);
     production.predecessor = std::move(parts[middle][0]);
-    execution_.run(block, Way{}, [&](Way&& way) {
+    const auto add = [&](Way&& way) {
       if (way.stop == Statement::Stop::all) return; // return: nothing is produced
       Production p = production;
       for (Expression& condition : way.conditions) {
@@ -309,7 +310,9 @@ private:
       }
       p.successor = commands(std::move(way.modules));
       file_.systems[0].productions.push_back(std::move(p));
-    });
+    };
+    for (Way& way : execution_.run(block, Way{}, add))
+      if (isOfLpy_ && !way.modules.empty()) add(std::move(way));
   }
 
   std::string commandOf(const std::string& name) const {
@@ -535,7 +538,7 @@ private:
   std::vector<Statement> stepCode_, endCode_;
   std::map<std::string, float> start_; ///< of values that code of steps changes
   uint32_t phase_ = kPhaseMain, drawn_ = 0;
-  bool failed_ = false;
+  bool failed_ = false, isOfLpy_ = false;
 };
 
 } // namespace
@@ -557,7 +560,19 @@ bool isOfLpfg(std::string_view text) {
 
 File parseLpfg(std::string_view text, Diagnostics& diagnostics, std::span<const Override> overrides,
                const ReadFile& read) {
-  return Lpfg(text, diagnostics, overrides, read).run();
+  return Lpfg(preprocessedC(text, diagnostics, read), diagnostics, overrides, false).run();
+}
+
+File parseLpy(std::string_view text, Diagnostics& diagnostics, std::span<const Override> overrides) {
+  LpyText translated = translateLpy(text, diagnostics);
+  File file = Lpfg(std::move(translated.code), diagnostics, overrides, true).run();
+  const auto set = [](std::optional<Expression>& setting, float value) {
+    setting.emplace();
+    setting->number = value;
+  };
+  set(file.settings.angle, translated.angle);
+  if (!translated.hasLength) set(file.settings.iterations, 1);
+  return file;
 }
 
 } // namespace gpgp::spawn::lsystem

@@ -502,7 +502,12 @@ private:
 
 std::string numberedSystem(uint32_t number) { return "lsystem" + std::to_string(number); }
 
-File parse(std::string_view text, Diagnostics& diagnostics, std::span<const Override> overrides, const ReadFile& read) {
+File parse(std::string_view text, Diagnostics& diagnostics, std::span<const Override> overrides, const ReadFile& read,
+           std::string_view start) {
+  if (isOfFractint(text)) return parseFractint(text, diagnostics, start);
+  if (!start.empty())
+    diagnostics.error({}, "this file has one system, which has no name; '" + std::string(start) + "' is none of it");
+  if (isOfLpy(text)) return parseLpy(text, diagnostics, overrides);
   if (isOfLpfg(text)) return parseLpfg(text, diagnostics, overrides, read);
   return Parser(text, diagnostics, overrides, read).run();
 }

@@ -27,6 +27,14 @@ std::vector<Line> plantModellerLines(std::string_view text, Diagnostics& diagnos
 /// A file in L+C as one line, behind the preprocessor; macros that are numbers are constants of it.
 Line preprocessedC(std::string_view text, Diagnostics& diagnostics, const ReadFile& read);
 
+/// A file of L-Py as text in L+C, each character at the place that it comes from.
+struct LpyText {
+  Line code;
+  float angle = 60; ///< of a turn without another one
+  bool hasLength = false;
+};
+LpyText translateLpy(std::string_view text, Diagnostics& diagnostics);
+
 /// Where a production's arrow begins (-->, ->) and how long it is; npos where there is none.
 std::pair<size_t, size_t> arrowIn(std::string_view text);
 

@@ -108,15 +108,24 @@ struct Override {
 /// The text of a file that an #include names; false where there is none.
 using ReadFile = std::function<bool(const std::string& path, std::string& text)>;
 
-/// Parses a file. What is no line of one is reported and left out.
+/// Parses a file. What is no line of one is reported and left out. start: of a file that has several systems with
+/// names, the one to read; empty: the first.
 File parse(std::string_view text, Diagnostics& diagnostics, std::span<const Override> overrides = {},
-           const ReadFile& read = {});
+           const ReadFile& read = {}, std::string_view start = {});
+
+/// Whether a file is one of Fractint's, which has entries with an axiom: Koch { Angle 6 Axiom F--F--F F=F+F--F+F }.
+bool isOfFractint(std::string_view text);
+File parseFractint(std::string_view text, Diagnostics& diagnostics, std::string_view start);
 
 /// Whether a file is in L+C, the language of lpfg: it includes lpfgall.h, or has modules that are declared and
 /// produced.
 bool isOfLpfg(std::string_view text);
 File parseLpfg(std::string_view text, Diagnostics& diagnostics, std::span<const Override> overrides,
                const ReadFile& read);
+
+/// Whether a file is one of L-Py: it has a line that begins with "Axiom:", and a line "production:" or one of Python.
+bool isOfLpy(std::string_view text);
+File parseLpy(std::string_view text, Diagnostics& diagnostics, std::span<const Override> overrides);
 
 /// What the sub-system of a number is called.
 std::string numberedSystem(uint32_t number);

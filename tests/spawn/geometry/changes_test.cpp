@@ -156,6 +156,56 @@ TEST_F(Changes, CleanUpJoinsWhatSlicesParted) {
   EXPECT_EQ(vertexCount(pool, form), 6u);
 }
 
+/// A form's faces as loops of one corner list, some of them the other way around.
+void rebuild(GeometryPool& pool, const Form& from, Random& random, bool all, Form& form) {
+  std::vector<vec3> positions;
+  std::vector<uint32_t> corners, sizes;
+  for (uint32_t f = 0; f < faceCount(pool, from); ++f) {
+    const Loop loop = faceCorners(pool, from.mesh, f);
+    const bool isReversed = all || random.below(2);
+    for (uint32_t i = 0; i < loop.corners; ++i) {
+      corners.push_back(uint32_t(positions.size()));
+      positions.push_back(framePosition(pool, from, loop.firstCorner + (isReversed ? loop.corners - 1 - i : i)));
+    }
+    sizes.push_back(loop.corners);
+  }
+  ASSERT_EQ(makeMesh(pool, positions, corners, sizes, {}, form), kGeometryOk);
+}
+
+TEST_F(Changes, FacesAreTurnedAlike) {
+  Random random(5);
+  for (int i = 0; i < 300; ++i) {
+    pool.clear();
+    // Solids: outwards again, however their faces were turned.
+    Form solid{}, turned{};
+    ASSERT_EQ(makeForm(pool, random.concave(20, false), solid), kGeometryOk);
+    ASSERT_EQ(extrude(pool, solid, Extrusion::FaceNormal, 3), kGeometryOk);
+    rebuild(pool, solid, random, i % 3 == 0, turned);
+    ASSERT_EQ(conformNormals(pool, turned), kGeometryOk);
+    EXPECT_TRUE(isClosedSurface(pool, turned)) << i;
+    EXPECT_NEAR(volume(pool, turned), volume(pool, solid), 1e-4 * volume(pool, solid)) << i;
+    // Without its bottom, and with it alone: the rest is open, and faces up where that is told.
+    Form open{}, up{};
+    ASSERT_EQ(makeForm(pool, random.concave(20, false), open), kGeometryOk);
+    RoofOptions roofs;
+    roofs.value = 30;
+    ASSERT_EQ(roof(pool, open, roofs), kGeometryOk);
+    std::vector<uint32_t> slopes;
+    for (uint32_t f = 0; f < faceCount(pool, open); ++f)
+      if (faceOf(pool, open.mesh, f).tags & kTagRoofTop) slopes.push_back(f);
+    ASSERT_EQ(toComponents(pool, open, Component::Faces, slopes, up), kGeometryOk);
+    rebuild(pool, up, random, i % 3 == 0, turned);
+    ASSERT_EQ(conformNormals(pool, turned), kGeometryOk);
+    for (uint32_t f = 0; f < faceCount(pool, turned); ++f)
+      EXPECT_NEAR(faceNormal(pool, turned, f).y, faceNormal(pool, up, f).y, 1e-3) << i << ": " << f;
+  }
+  // Turned alike, they keep the mesh that they have.
+  box(2, 3, 4);
+  const uint32_t mesh = form.mesh;
+  ASSERT_EQ(conformNormals(pool, form), kGeometryOk);
+  EXPECT_EQ(form.mesh, mesh);
+}
+
 TEST_F(Changes, WingsInnerRectanglesAndEnvelopes) {
   Form shape{}, rest{};
   ASSERT_EQ(makeForm(pool, rectangle(10, 8), form), kGeometryOk);

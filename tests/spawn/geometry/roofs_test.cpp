@@ -49,6 +49,62 @@ RoofFaces measureRoof(MeshPool& pool, const Form& form, uint32_t tag, double deg
   return r;
 }
 
+/// The integral over a polygon of the distance to the nearer end of its extent along z, by Green's theorem.
+double tentVolume(const std::vector<std::vector<glm::dvec2>>& loops, double depth) {
+  const double half = depth / 2;
+  // The integral of min(z, depth - z) from 0 to z.
+  const auto whole = [&](double z) { return z < half ? z * z / 2 : half * half - (depth - z) * (depth - z) / 2; };
+  double sum = 0;
+  for (const auto& loop : loops)
+    for (size_t i = 0; i < loop.size(); ++i) {
+      const glm::dvec2 a = loop[i], b = loop[(i + 1) % loop.size()];
+      const double split = (a.y < half) == (b.y < half) ? 1.0 : (half - a.y) / (b.y - a.y);
+      const auto part = [&](double from, double to) { // Simpson's rule: of parabolas exact
+        const auto at = [&](double t) { return whole(a.y + (b.y - a.y) * t); };
+        return (to - from) / 6 * (at(from) + 4 * at((from + to) / 2) + at(to));
+      };
+      sum += (part(0, split) + part(split, 1)) * (b.x - a.x);
+    }
+  return std::fabs(sum);
+}
+
+TEST(Roofs, RidgesAlongTheScopeOverOutlinesWithHoles) {
+  Random random(77);
+  GeometryPool pool;
+  double worstVolume = 0, worstArea = 0;
+  uint32_t withHoles = 0;
+  for (int i = 0; i < 3000; ++i) {
+    pool.clear();
+    const Polygon p = i % 4 ? random.concave() : random.convex();
+    withHoles += p.loops.size() > 1;
+    Form form{};
+    ASSERT_EQ(makeForm(pool, p, form), kGeometryOk) << i;
+    const Scope scope = form.scope;
+    std::vector<std::vector<glm::dvec2>> loops;
+    for (const auto& loop : p.loops) {
+      loops.emplace_back();
+      for (const vec2& at : loop) {
+        const glm::dvec3 arm = glm::dvec3(at.x, 0, -at.y) - glm::dvec3(scope.origin);
+        loops.back().push_back({glm::dot(arm, glm::dvec3(scope.axisX)), glm::dot(arm, glm::dvec3(scope.axisZ))});
+      }
+    }
+    const double degrees = random.between(10, 70), slope = std::tan(degrees / 57.29577951308232);
+    ASSERT_EQ(ridgeRoof(pool, form, false, float(degrees)), kGeometryOk) << i;
+    EXPECT_TRUE(isClosedSurface(pool, form)) << i;
+    const double expected = slope * tentVolume(loops, scope.size.z);
+    // Parts of the box under the ridge.
+    const double box = p.area() * slope * 0.5 * scope.size.z;
+    worstVolume = std::max(worstVolume, std::fabs(volume(pool, form) - expected) / box);
+    const RoofFaces top = measureRoof(pool, form, kTagRoofTop, degrees);
+    worstArea = std::max(worstArea, std::fabs(top.plan - p.area()) / p.area());
+    EXPECT_LT(top.worstAngle, 0.05) << i;
+    EXPECT_GE(top.lowestPlan, 0) << i;
+  }
+  EXPECT_GT(withHoles, 200u);
+  EXPECT_LT(worstVolume, 1e-4);
+  EXPECT_LT(worstArea, 1e-4);
+}
+
 TEST(Roofs, HipsProjectOntoTheOutlineOnce) {
   Random random(21);
   GeometryPool pool;
