@@ -229,6 +229,8 @@ TEST(SvgText, WhatIsNotDrawnIsNamed) {
        "2:15: warning: font-size-adjust is not supported: <tspan> is drawn without it"},
       {"<text y='20' style='inline-size:90px'>a<tspan>b</tspan></text>",
        "2:1: warning: inline-size is not supported: <text> is drawn without it"},
+      {"<text x='10 50' y='20' textLength='90'>ab</text>",
+       "2:36: warning: textLength of several lines is not supported: <text> is drawn without it"},
       {"<text x='50' writing-mode='tb' glyph-orientation-vertical='0'>a</text>",
        "2:1: warning: glyph-orientation-vertical is not supported: <text> is drawn without it"},
       {"<text x='50' style='writing-mode:vertical-rl;text-orientation:upright'>a</text>",

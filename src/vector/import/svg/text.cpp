@@ -334,6 +334,9 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
   for (size_t n = text.elements.size(); n-- > 0;) {
     const Text::Element& e = text.elements[n];
     const pugi::xml_attribute said = e.node.attribute("textLength");
+    if (said && e.first >= first && e.first < last && e.last > last)
+      reporter_.warn(document_.place(said, 0),
+                     "textLength of several lines is not supported: " + element(e.node) + " is drawn without it");
     if (!said || e.first < first || e.last > last || e.first == e.last) continue;
     LengthContext lengths = e.state.lengths;
     lengths.fontSize = e.state.style.fontSize;
