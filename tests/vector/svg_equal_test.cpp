@@ -253,11 +253,11 @@ TEST(SvgEqual, TextIsOutlines) {
       {"no attribute", "<text x='10' y='40' font-kerning='none'>VV</text>", at(10, 40) + at(18, 40)},
       {"what deletes is not seen", "<text x='10' y='40'>a&#x7f;b</text>", at(10, 40) + at(20, 40)},
       {"nothing of no size", "<text x='10' y='40'>a<tspan font-size='0'>b</tspan>c</text>", at(10, 40) + at(20, 40)},
-      {"from above", // 6 units to the left of the middle of ascent and descent is the baseline
+      {"from above", // half of the height of an x, 4 units, to the left of the line is the baseline
        "<text x='40' y='10' writing-mode='tb'>a<tspan dy='5' dx='2'>b</tspan></text>",
-       at(0, 0, "transform='translate(34 10) rotate(90)'") + at(0, 0, "transform='translate(36 25) rotate(90)'")},
+       at(0, 0, "transform='translate(36 10) rotate(90)'") + at(0, 0, "transform='translate(38 25) rotate(90)'")},
       {"from above in the middle", "<text x='40' y='50' writing-mode='vertical-rl' text-anchor='middle'>ab</text>",
-       at(0, 0, "transform='translate(34 40) rotate(90)'") + at(0, 0, "transform='translate(34 50) rotate(90)'")},
+       at(0, 0, "transform='translate(36 40) rotate(90)'") + at(0, 0, "transform='translate(36 50) rotate(90)'")},
       {"from x on along a path",
        "<path id='p' d='M20 10V90' fill='none'/><text x='10'><textPath href='#p'>ab</textPath></text>",
        at(0, 0, "transform='translate(20 20) rotate(90)'") + at(0, 0, "transform='translate(20 30) rotate(90)'")},
@@ -331,7 +331,7 @@ TEST(SvgEqual, DrawingsAreImages) {
       {"at their own size", image + "x='10' y='20'/>" + below,
        "<rect x='10' y='20' width='10' height='10' fill='#a00'/>" + below},
       {"fitted", image + "width='40' height='40'/>" + below,
-       "<rect y='10' width='20' height='20' fill='#a00'/>" + below},
+       "<rect y='10' width='20' height='30' fill='#a00'/>" + below}, // what reaches beyond its page is seen
       {"stretched", image + "width='40' height='40' preserveAspectRatio='none'/>" + below,
        "<rect width='20' height='40' fill='#a00'/>" + below},
       {"faded", "<g opacity='.5'>" + image + "width='40' opacity='.5'/></g>",

@@ -1,5 +1,6 @@
 // Masks, filters and modes of mixing of SVG as layers: which groups come of them, their regions and numbers by hand,
 // what is said of those in error, and the limits.
+#include "layer_oracle.h"
 #include "svg_import.h"
 
 #include <gtest/gtest.h>
@@ -285,6 +286,31 @@ TEST(SvgLayers, WhatContainsItselfEnds) {
   }
 }
 
+TEST(SvgLayers, OfARingOnlyTheFirstCounts) {
+  // Whichever way the second leads back to the first, the picture is that of the first alone.
+  const std::string shape = "<path d='M5 5h40v40h-40z' fill='white'", part = "<rect width='9' height='9' fill='white'";
+  const std::string alone = kRect + "mask='url(#m)'/><mask id='m'>" + shape + "/></mask>";
+  const std::string rings[] = {
+      "<mask id='m' mask='url(#n)'>" + shape + "/></mask><mask id='n' mask='url(#m)'>" + part + "/></mask>",
+      "<mask id='m'>" + shape + " mask='url(#n)'/></mask><mask id='n'>" + part + " mask='url(#m)'/></mask>",
+      "<mask id='m'>" + shape + " mask='url(#n)'/></mask><mask id='n' mask='url(#o)'>" + part +
+          "/></mask><mask id='o'><g mask='url(#m)'>" + part + "/></g></mask>"};
+  const auto shownBy = [](const Import& i) { return LayerOracle(i.drawing, 60, 60, 1).draw(); };
+  for (const std::string& ring : rings) {
+    const Import i = page(kRect + "mask='url(#m)'/>" + ring);
+    ASSERT_EQ(i.placed.size(), 1u) << ring;
+    EXPECT_NE(i.placed[0].find("mask 'url(#n)' contains itself"), std::string::npos) << i.placed[0];
+    EXPECT_EQ(shownBy(i), shownBy(page(alone))) << ring;
+  }
+  const Import clips =
+      page("<clipPath id='c' clip-path='url(#d)'><path d='M5 5h40v40h-40z'/></clipPath><clipPath id='d' "
+           "clip-path='url(#c)'><rect width='9' height='9'/></clipPath>" +
+           kRect + "clip-path='url(#c)'/>");
+  EXPECT_EQ(clips.placed, Texts{"test.svg:2:1: warning: clip-path 'url(#d)' contains itself: <clipPath> is drawn "
+                                "without it"});
+  EXPECT_LE(worst(picture(clips), picture(page("<path d='M10 20h35v20h-35z' fill='#0a0'/>"))), 0.51);
+}
+
 /// The steps of a filter of the rectangle (10, 20) to (50, 40) with the primitives inside.
 Texts steps(const std::string& primitives, const std::string& attributes = "", Texts* messages = nullptr) {
   const Import i = page("<filter id='f'" + attributes + ">" + primitives + "</filter>" + kRect + "filter='url(#f)'/>");
@@ -474,7 +500,7 @@ TEST(SvgLayers, PrimitivesInErrorPassOnOrShowNothing) {
       {"<feConvolveMatrix/>", "flood [0 0 100 90]"},
       {"<feConvolveMatrix order='1 1' kernelMatrix='1 2'/>", "flood [0 0 100 90]"},
       {"<feConvolveMatrix order='-1' kernelMatrix='0 0 0 0 1 0 0 0 0'/>", "convolve/1 S [0 0 100 90] 3 3 1 1 1"},
-      {"<feConvolveMatrix order='1.5' kernelMatrix='1'/>", "flood [0 0 100 90]"},
+      {"<feConvolveMatrix order='1.5' kernelMatrix='2'/>", "convolve/1 S [0 0 100 90] 1 1 0 0 2"},
       {"<feConvolveMatrix targetX='3' kernelMatrix='1 1 1 1 1 1 1 1 1'/>", "flood [0 0 100 90]"},
       {"<feConvolveMatrix order='33' kernelMatrix='1'/>", "offset S [0 0 100 90]"},
       {"<feDiffuseLighting/>", "flood [0 0 100 90]"},

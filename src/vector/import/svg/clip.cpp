@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 namespace gpgp::vector::svg {
 std::string referenceOf(std::string_view text) {
@@ -58,21 +59,35 @@ Style Importer::styleOf(pugi::xml_node node, const LengthContext& lengths) {
   return style;
 }
 
-bool Importer::refersBack(pugi::xml_node clipPath, const LengthContext& lengths, std::vector<pugi::xml_node>& seen) {
-  for (pugi::xml_node at = clipPath; at && !stopped(at);) {
-    const std::string value = document_.name(at).empty() ? std::string() : styleOf(at, lengths).clipPath;
+const std::vector<pugi::xml_node>& Importer::referencesIn(pugi::xml_node from, std::string Style::*property,
+                                                          const LengthContext& lengths) {
+  const auto [known, isNew] = references_.try_emplace(from.hash_value());
+  std::vector<pugi::xml_node>& found = known->second;
+  if (!isNew) return found;
+  for (pugi::xml_node at = from; at && !stopped(at);) {
+    const std::string value = document_.name(at).empty() ? std::string() : styleOf(at, lengths).*property;
     const pugi::xml_node target = value.empty() ? pugi::xml_node() : document_.find(referenceOf(value));
-    if (target && std::find(used_.begin(), used_.end(), target) != used_.end()) return true;
-    if (target && std::find(seen.begin(), seen.end(), target) == seen.end()) {
-      seen.push_back(target);
-      if (seen.size() > 32 || refersBack(target, lengths, seen)) return true;
-    }
+    if (target && std::find(found.begin(), found.end(), target) == found.end()) found.push_back(target);
     if (at.first_child()) {
       at = at.first_child();
       continue;
     }
-    while (at && at != clipPath && !at.next_sibling()) at = at.parent();
-    at = at == clipPath ? pugi::xml_node() : at.next_sibling();
+    while (at && at != from && !at.next_sibling()) at = at.parent();
+    at = at == from ? pugi::xml_node() : at.next_sibling();
+  }
+  return found;
+}
+
+bool Importer::refersBack(pugi::xml_node from, std::string Style::*property, const LengthContext& lengths) {
+  std::vector<pugi::xml_node> open{from};
+  std::unordered_set<size_t> seen{from.hash_value()};
+  while (!open.empty() && !stopped_) {
+    const pugi::xml_node at = open.back();
+    open.pop_back();
+    for (const pugi::xml_node next : referencesIn(at, property, lengths)) {
+      if (std::find(used_.begin(), used_.end(), next) != used_.end()) return true;
+      if (seen.insert(next.hash_value()).second) open.push_back(next);
+    }
   }
   return false;
 }
@@ -98,8 +113,15 @@ void Importer::clip(pugi::xml_node node, std::string_view name, State& state, co
       return without(shown + " contains itself");
     const bool isInside = std::any_of(used_.begin(), used_.end(),
                                       [&](pugi::xml_node used) { return document_.name(used) == "clipPath"; });
-    std::vector<pugi::xml_node> seen{target};
-    if (isInside && refersBack(target, state.lengths, seen)) return without(shown + " contains what it clips");
+    if (isInside && refersBack(target, &Style::clipPath, state.lengths))
+      return without(shown + " contains what it clips");
+    std::vector<pugi::xml_node> chain{target}; // of a ring of clipPaths only the first clips
+    while (!targets.empty()) {
+      const pugi::xml_node next = document_.find(referenceOf(styleOf(chain.back(), state.lengths).clipPath));
+      if (!next || std::find(chain.begin(), chain.end(), next) != chain.end()) break;
+      if (std::find(targets.begin(), targets.end(), next) != targets.end()) return without(shown + " contains itself");
+      chain.push_back(next);
+    }
     if (state.clips >= shader::kMaxClipDepth || state.clips + state.fading + state.layers >= GPGP_MAX_LAYER_DEPTH ||
         layerCount_ >= limits_.layers)
       return without("is inside too many others");

@@ -128,7 +128,8 @@ void Importer::exchange(Importer& other) {
   madeClips_.clear(), other.madeClips_.clear();
 }
 
-/// A drawing is a picture of its own: it has its own style sheets and ids, reads no files, and is clipped to its place.
+/// A drawing is a picture of its own: it has its own style sheets and ids, reads no files, and is clipped to its
+/// place, not to its page.
 void Importer::drawDrawing(pugi::xml_node node, const State& state, const ViewBox& box, const Document& drawing) {
   if (state.depth >= limits_.depth || depthOfDrawings_ >= 8)
     return reporter_.warn(document_.place(node), element(node) + " holds a drawing that is nested too deeply");
@@ -146,18 +147,13 @@ void Importer::drawDrawing(pugi::xml_node node, const State& state, const ViewBo
   if (!(w > 0 && h > 0)) return;
   const Affine fitted =
       Affine{1, 0, 0, 1, box.x, box.y} * (isSized ? fitViewBox({0, 0, pw, ph}, w, h, aspectRatio(node)) : Affine{});
-  const double left = std::max(box.x, fitted.e), top = std::max(box.y, fitted.f);
-  const double right = isSized ? std::min(box.x + w, fitted.e + pw * fitted.a) : box.x + w,
-               bottom = isSized ? std::min(box.y + h, fitted.f + ph * fitted.d) : box.y + h;
-  if (!(right > left && bottom > top)) return;
-  if (mode_ == Mode::Measure)
-    return measure(rectangle(left, top, right - left, bottom - top, 0, 0, 1), toBox_ * state.transform);
+  if (mode_ == Mode::Measure) return measure(rectangle(box.x, box.y, w, h, 0, 0, 1), toBox_ * state.transform);
   if (mode_ == Mode::Clip || !state.style.visible) return;
   first.transform = state.transform * fitted * first.transform;
   inner.toPage_ = first.transform;
   first.opacity = state.opacity, first.depth = state.depth + 1;
   State outer = state;
-  clipped(node, state.transform * Affine{1, 0, 0, 1, left, top}, right - left, bottom - top, outer, [&] {
+  clipped(node, state.transform * Affine{1, 0, 0, 1, box.x, box.y}, w, h, outer, [&] {
     first.group = outer.group, first.fading = outer.fading, first.clips = outer.clips, first.layers = outer.layers;
     exchange(inner);
     inner.visit(drawing.root(), first);

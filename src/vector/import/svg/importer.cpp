@@ -18,6 +18,13 @@ constexpr std::string_view kSilent[] = {
 
 constexpr double kMaxReach = 1e7; // pixels
 
+/// Whether a text has characters, or elements that can bring some.
+bool hasText(pugi::xml_node node) {
+  for (const pugi::xml_node child : node.children())
+    if (child.type() == pugi::node_element || !trim(child.value()).empty()) return true;
+  return false;
+}
+
 } // namespace
 
 /// No extension is known, and the reader's language is English.
@@ -136,7 +143,8 @@ void Importer::visit(pugi::xml_node node, const State& parent, const double* use
     if (clipsApart_) clip(node, name, state, nullptr);
   }
   if (mode_ != Mode::Paint) return content(node, name, state, useSize);
-  if (!state.style.filter.empty() && oneOf(name, kShapes) && shapeOf(node, name, state).empty()) return; // not rendered
+  const bool isEmpty = oneOf(name, kShapes) ? shapeOf(node, name, state).empty() : name == "text" && !hasText(node);
+  if (!state.style.filter.empty() && isEmpty) return; // not rendered
   const auto inside = [&](State& own) { content(node, name, own, useSize); };
   if ((name != "svg" && name != "symbol") || node == document_.root()) return grouped(node, name, state, inside);
   const std::optional<Viewport> viewport = viewportOf(node, state, useSize);

@@ -153,8 +153,11 @@ private:
   // clip.cpp
   /// Puts what the element refers to around it; says so where that cannot be.
   void clip(pugi::xml_node node, std::string_view name, State& state, const Frame* of);
-  /// Whether a clipPath inside of one that is being shown leads back to that. `seen`: those that were looked at.
-  bool refersBack(pugi::xml_node clipPath, const LengthContext& lengths, std::vector<pugi::xml_node>& seen);
+  /// What a clipPath or mask and all that is inside refer to by the property.
+  const std::vector<pugi::xml_node>& referencesIn(pugi::xml_node from, std::string Style::*property,
+                                                  const LengthContext& lengths);
+  /// Whether a clipPath or mask leads back, by the property, to one that is being shown.
+  bool refersBack(pugi::xml_node from, std::string Style::*property, const LengthContext& lengths);
   /// Of an element that others refer to: what it has from where it stands, not from them.
   Style styleOf(pugi::xml_node node, const LengthContext& lengths);
   /// Of all shapes inside, strokes and clips aside, in coordinates given by their transform to the page.
@@ -257,7 +260,7 @@ private:
   /// Puts what `show` draws into a group that is shown only where something refers to it: 1 + index; 0: it is empty.
   uint32_t aside(State inner, const std::function<void(State&)>& show);
   /// What a mask property refers to; what is wrong is said.
-  pugi::xml_node maskOf(pugi::xml_node from, const std::string& value);
+  pugi::xml_node maskOf(pugi::xml_node from, const State& state);
   /// False where nothing is shown through it.
   bool mask(pugi::xml_node target, pugi::xml_node node, const State& state, const Affine& space,
             const std::function<Box()>& box, ImportedLayer& layer);
@@ -306,7 +309,8 @@ private:
   std::deque<std::string> sheetNames_;  // which places of messages refer to
   std::vector<std::string> openSheets_; // paths, each imported by the one before
   size_t sheetCount_ = 0, sheetBytes_ = 0;
-  std::unordered_map<size_t, GradientChain> chains_; // by their first
+  std::unordered_map<size_t, GradientChain> chains_;                   // by their first
+  std::unordered_map<size_t, std::vector<pugi::xml_node>> references_; // of clipPaths and masks
   Imported result_;
   std::vector<pugi::xml_node> used_; // the <use> targets we are inside of
   size_t elements_ = 0, points_ = 0, work_ = 0, steps_ = 0;

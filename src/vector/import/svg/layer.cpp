@@ -116,7 +116,8 @@ uint32_t Importer::aside(State inner, const std::function<void(State&)>& show) {
   return own;
 }
 
-pugi::xml_node Importer::maskOf(pugi::xml_node from, const std::string& value) {
+pugi::xml_node Importer::maskOf(pugi::xml_node from, const State& state) {
+  const std::string& value = state.style.mask;
   if (value.empty()) return {};
   const std::string reference = referenceOf(value);
   const pugi::xml_node target = reference.empty() ? pugi::xml_node() : document_.find(reference);
@@ -132,7 +133,11 @@ pugi::xml_node Importer::maskOf(pugi::xml_node from, const std::string& value) {
   }
   if (!target) return without("does not exist");
   if (document_.name(target) != "mask") return without("is not a mask");
-  if (std::find(used_.begin(), used_.end(), target) != used_.end()) return without("contains itself");
+  const bool isInside =
+      std::any_of(used_.begin(), used_.end(), [&](pugi::xml_node used) { return document_.name(used) == "mask"; });
+  if (std::find(used_.begin(), used_.end(), target) != used_.end() ||
+      (isInside && refersBack(target, &Style::mask, state.lengths)))
+    return without("contains itself");
   return target;
 }
 
@@ -218,7 +223,7 @@ void Importer::grouped(pugi::xml_node node, std::string_view name, State& state,
   }
   // Clips are outermost: they cut what comes of all the rest.
   if (clips) clip(node, name, state, of);
-  const pugi::xml_node masked = maskOf(node, style.mask);
+  const pugi::xml_node masked = maskOf(node, state);
   const std::vector<FilterFunction> functions = filtersOf(node, state);
   const bool filters = !functions.empty(), blends = style.blend != GPGP_BLEND_NORMAL;
   bool effects = masked || filters || blends;

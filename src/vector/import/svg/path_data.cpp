@@ -91,6 +91,7 @@ private:
     begin();
     const size_t first = shape_.verbs.size();
     appendSvgArc(shape_, at_, values[0], values[1], values[2], large, positive, p, tolerance_);
+    if (shape_.verbs.size() == first) shape_.line(p); // to where it begins: its caps show
     if (silent_)
       for (size_t i = first; i + 1 < shape_.verbs.size(); ++i) silent_->push_back(i);
     at_ = p;

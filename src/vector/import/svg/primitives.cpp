@@ -182,12 +182,18 @@ void Importer::FilterReader::convolveMatrix(Primitive& p) {
     importer.ignored(p.node, p.node.attribute(name) ? p.node.attribute(name) : p.node.attribute("order"));
     transparent(p);
   };
+  const auto whole = [&](double& value, const char* name) { // as browsers and resvg read it
+    if (value == std::trunc(value)) return;
+    importer.reporter_.ignored(importer.document_.place(p.node.attribute(name), 0),
+                               importer.valueOf(p.node, name, p.node.attribute(name).value()) +
+                                   "no whole number; its fraction is ignored");
+    value = std::trunc(value);
+  };
+  for (double& o : order) whole(o, "order");
   if (!(order[0] > 0 && order[1] > 0)) { // counts as not said (Filter Effects 1, 9.9)
     importer.ignored(p.node, p.node.attribute("order"));
     order = {3, 3};
   }
-  for (const double o : order)
-    if (o != std::floor(o)) return wrong("order");
   if (std::max(order[0], order[1]) > static_cast<double>(kMaxOrder)) {
     unsupported(p.node, "order above " + std::to_string(kMaxOrder));
     return passOn(p);
@@ -215,10 +221,11 @@ void Importer::FilterReader::convolveMatrix(Primitive& p) {
   for (const double k : kernel) sum += k;
   if (isZero(divisor)) divisor = isZero(sum) ? 1 : sum;
   shrink(std::abs(divisor));
-  const double x = number(p.node, "targetX", std::floor(order[0] / 2)),
-               y = number(p.node, "targetY", std::floor(order[1] / 2));
-  if (!(x >= 0 && x < order[0] && x == std::floor(x))) return wrong("targetX");
-  if (!(y >= 0 && y < order[1] && y == std::floor(y))) return wrong("targetY");
+  double x = number(p.node, "targetX", std::floor(order[0] / 2)),
+         y = number(p.node, "targetY", std::floor(order[1] / 2));
+  whole(x, "targetX"), whole(y, "targetY");
+  if (!(x >= 0 && x < order[0])) return wrong("targetX");
+  if (!(y >= 0 && y < order[1])) return wrong("targetY");
   constexpr std::string_view edges[] = {"none", "duplicate", "wrap"}, booleans[] = {"false", "true"};
   const int32_t edge = choice(p.node, "edgeMode", edges, GPGP_EDGE_DUPLICATE),
                 keeps = choice(p.node, "preserveAlpha", booleans, 0);

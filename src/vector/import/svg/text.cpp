@@ -334,6 +334,9 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
   for (size_t n = text.elements.size(); n-- > 0;) {
     const Text::Element& e = text.elements[n];
     const pugi::xml_attribute said = e.node.attribute("textLength");
+    if (said && e.first >= first && e.first < last && e.last > last)
+      reporter_.warn(document_.place(said, 0),
+                     "textLength of several lines is not supported: " + element(e.node) + " is drawn without it");
     if (!said || e.first < first || e.last > last || e.first == e.last) continue;
     LengthContext lengths = e.state.lengths;
     lengths.fontSize = e.state.style.fontSize;
@@ -390,11 +393,10 @@ void Importer::shapeLine(Text& text, size_t first, size_t last) {
     const bool isDominant = !oneOf(own, alignments);
     const bool isEdge = dominant == "before-edge" || dominant == "after-edge"; // of alignment-baseline alone
     const std::string_view baseline = !isDominant ? std::string_view(own) : isEdge ? std::string_view() : dominant;
-    const bool isCentral =
-        text.vertical && (baseline.empty() || baseline == "auto"); // lines run through the letters' middle
+    const bool isMiddle = text.vertical && (baseline.empty() || baseline == "auto"); // lines run through small letters
     const double raised = of.shift + g.size * (of.superscripts * static_cast<double>(g.metrics.superscript) -
                                                of.subscripts * static_cast<double>(g.metrics.subscript));
-    const double lower = baselineOffset(isCentral ? "central" : baseline, g.metrics) * g.size - raised + places[k].y;
+    const double lower = baselineOffset(isMiddle ? "middle" : baseline, g.metrics) * g.size - raised + places[k].y;
     const double x = left + places[k].x;
     g.advance *= stretches[k];
     g.angle = text.characters[g.character].rotate * (std::numbers::pi / 180);

@@ -15,7 +15,8 @@ template <size_t N> bool isIn(uint32_t c, const CharacterRange (&ranges)[N]) {
 
 double baselineOffset(std::string_view baseline, const GpgpSvgGlyph& g) {
   const auto em = [](float v) { return static_cast<double>(v); };
-  if (baseline == "middle") return (g.xHeight > 0 ? em(g.xHeight) : 0.5) / 2;
+  if (baseline == "middle") // fonts that do not state it: as resvg estimates it
+    return (g.xHeight > 0 ? em(g.xHeight) : 0.45 * (em(g.ascent) + em(g.descent))) / 2;
   if (baseline == "central") return (em(g.ascent) - em(g.descent)) / 2;
   if (baseline == "hanging") return em(g.ascent) * 0.8;
   if (baseline == "mathematical") return em(g.ascent) * 0.5;
