@@ -219,6 +219,16 @@ TEST(CliVector, CountsPatchesByTile) {
   EXPECT_EQ(drawn["patches_per_tile"], 6 / 16.0);
   EXPECT_EQ(drawn["curves_per_patch_tiled"], (2 + 2 + 3 + 3) / 6.0);
   EXPECT_FALSE(drawn.contains("psnr_db"));
+  // A disc has four patches, as its arcs end where they lean by 45 degrees: just below the second row's border, or just
+  // above it, where the outer ones reach into the corner tiles and the inner ones into the outer rows.
+  for (const auto& [radius, tiles] : {std::pair("11.2", 4 * 2 + 2 * 4), {"11.4", 6 * 4}}) {
+    const TemporaryFile disc("disc.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='32' height='32'>"
+                                         "<circle cx='16' cy='16' r='" +
+                                             std::string(radius) + "'/></svg>");
+    const json round = gpgpJson({"vector", disc.path()});
+    EXPECT_EQ(round["patches"], 4);
+    EXPECT_EQ(round["patches_per_tile"], tiles / 16.0) << radius;
+  }
 }
 
 TEST(CliVector, FitsAsPreserveAspectRatioSays) {

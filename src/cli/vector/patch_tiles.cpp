@@ -2,6 +2,8 @@
 // the patch reaches from the first that its left side is in to the last that its right side is in.
 #include "cli/vector/patch_tiles.h"
 
+#include "vector/raster/segments.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,20 +12,15 @@ namespace {
 
 constexpr double kTile = 8;
 
-/// Where a curve is at a height: it grows in y, so bisection finds it.
+/// Where a curve is at a height.
 double xAt(const vector::CurveRecord& c, double y) {
   const auto at = [](float v) { return static_cast<double>(v); };
-  const double wanted = y - at(c.ends.y);
-  const auto cubic = [](double t, double a, double b, double d) {
-    const double s = 1 - t;
-    return 3 * s * s * t * a + 3 * s * t * t * b + t * t * t * d;
-  };
-  double low = 0, high = 1;
-  for (int i = 0; i < 40; ++i) {
-    const double t = 0.5 * (low + high);
-    (cubic(t, at(c.controls.y), at(c.controls.w), at(c.ends.w)) <= wanted ? low : high) = t;
-  }
-  return at(c.ends.x) + cubic(0.5 * (low + high), at(c.controls.x), at(c.controls.z), at(c.ends.z));
+  const double height = at(c.ends.w);
+  const double wanted = std::clamp(y - at(c.ends.y), 0.0, height);
+  if (!(height > 0)) return at(c.ends.x);
+  if (c.bend < 0) return at(c.ends.x) + wanted / height * at(c.ends.z);
+  const double t = vector::parameterAt(at(c.controls.y), at(c.controls.w), height, wanted), u = 1 - t;
+  return at(c.ends.x) + t * (3 * u * u * at(c.controls.x) + 3 * u * t * at(c.controls.z) + t * t * at(c.ends.z));
 }
 
 struct Columns { // of tiles, first to last, in the picture
@@ -79,15 +76,18 @@ PatchTiles countPatchTiles(const vector::Drawing& drawing, const float (&transfo
       bounding += (sides[0].curve != p.left) + (sides[1].curve != p.right) + hasTop + hasBottom;
       const double first = std::floor((top * scaleY + at(transform[5])) / kTile);
       const double last = std::ceil((bottom * scaleY + at(transform[5])) / kTile) - 1;
-      for (double row = std::max(first, 0.0); row <= std::min(last, rows - 1); ++row) {
-        const double y0 = std::max((row * kTile - at(transform[5])) / scaleY, top);
+      const double begin = std::max(first, 0.0);
+      const double y0 = std::max((begin * kTile - at(transform[5])) / scaleY, top);
+      double l0 = xAt(left, y0), r0 = xAt(right, y0);
+      for (double row = begin; row <= std::min(last, rows - 1); ++row) {
         const double y1 = std::min(((row + 1) * kTile - at(transform[5])) / scaleY, bottom);
-        const double l0 = xAt(left, y0), l1 = xAt(left, y1), r0 = xAt(right, y0), r1 = xAt(right, y1);
+        const double l1 = xAt(left, y1), r1 = xAt(right, y1);
         all.put(row, 0, between(std::min(l0, l1), std::max(r0, r1)), references);
         sides[0].put(row, p.left, between(l0, l1), tiled);
         sides[1].put(row, p.right, between(r0, r1), tiled);
         if (hasTop && row == first) tiled += between(ends[0][0], ends[0][1]).count();
         if (hasBottom && row == last) tiled += between(ends[1][0], ends[1][1]).count();
+        l0 = l1, r0 = r1;
       }
       sides[0].curve = p.left, sides[1].curve = p.right; // also where it lies outside of the picture
     }
