@@ -241,7 +241,12 @@ void ReuseTest::standStill(bool tested) {
     EXPECT_EQ(frame.reused.bits, frame.whole) << what << tested;
     EXPECT_EQ(frame.reused.list, frame.all.list) << what << tested;
     EXPECT_EQ(frame.reused.sizes, frame.all.sizes) << what << tested;
-    EXPECT_EQ(frame.reused.report.unresolved, frame.all.report.unresolved) << what << tested;
+    const uint32_t share = frame.reused.reuseShare; // of what is decided
+    if (share == 0 || share == shader::kReuseAll) {
+      EXPECT_EQ(frame.reused.report.unresolved, frame.all.report.unresolved) << what << tested;
+    } else {
+      EXPECT_LE(frame.reused.report.unresolved, frame.all.report.unresolved) << what << tested;
+    }
   };
   uint32_t shared = 0;
   for (uint32_t i = 0; i < (tested ? 3 : 5); ++i) {
