@@ -110,6 +110,15 @@ typedef struct GpgpCameraHistoryCreateInfo {
   const void* pNext;
   const char* label;     /**< for messages and debug names; copied */
   uint32_t maxTriangles; /**< largest triangleCount of its recordings, at most 2^31; one bit each; 0: 4194304 */
+  /** Exact method, one camera: recordings take over decisions of this history's previous recording. 0: each decides
+   *  all triangles anew. 0.0001 to 0.05, such as 0.005: the share of the visible triangles that may be late, which the
+   *  recordings aim at as a mean over a movement, by what they measure. A triangle is late if a recording finds it only
+   *  up to seven recordings after it came into sight, or keeps it so long after it was hidden. Triangles at pixel
+   *  centres, and those that come onto the screen, are never late. A recording of exactly the same triangles, viewport
+   *  and camera as the previous one, without alpha tests, returns what a recording without reuse would; after a jump of
+   *  the camera everything is decided. The history has four bits a triangle instead of one. Recordings of another
+   *  method, with several cameras, `accumulate` or `reach` decide all. */
+  float maxLate;
 } GpgpCameraHistoryCreateInfo;
 #define GPGP_CAMERA_HISTORY_CREATE_INFO_INIT                                                                           \
   GPGP_INIT(GpgpCameraHistoryCreateInfo, GPGP_STRUCTURE_CAMERA_HISTORY_CREATE_INFO)
@@ -501,6 +510,10 @@ typedef struct GpgpVisibilityReport {
    *  - pixels with too many triangles, whatever the budgets (see gpgpRecordPrepareVisibility);
    *  - more than 2^20 parts of candidates that are larger than 8 x 8 pixels. */
   uint32_t unresolved;
+  /** Exact: triangles on the screen, but at no pixel's centre and behind no limit, that were decided, and pixels in
+   *  which they were. reused: those whose last decision was taken over (GpgpCameraHistoryCreateInfo::maxLate);
+   *  neededCandidates and neededPairs are then those of what was decided. */
+  uint32_t decided, decidedPixels, reused;
   uint32_t neededDraws;         /**< of one camera: the number of draws, or of instances of commands */
   uint32_t draws;               /**< of these: sampled, and with drawCommands written */
   uint32_t neededDrawTriangles; /**< with lists by draw: the sum of all draws' visible triangles */

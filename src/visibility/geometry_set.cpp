@@ -1,6 +1,7 @@
 // What creation copies: a mesh table as bytes to upload, or a size to clear.
 #include "visibility/geometry_set.h"
 
+#include "visibility/reuse/reuse.h"
 #include "visibility/shared/layout.h"
 
 #include <algorithm>
@@ -43,11 +44,16 @@ core::Result<core::Unique<CameraHistory>> CameraHistory::create(core::Context& c
                                                                 const GpgpCameraHistoryCreateInfo& info) {
   if (info.maxTriangles > 1u << 31)
     return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxTriangles is %u; at most 2147483648", info.maxTriangles);
+  if (info.maxLate != 0 && !(info.maxLate >= 0.0001f && info.maxLate <= 0.05f))
+    return core::makeError(GPGP_ERROR_INVALID_ARGUMENT, "maxLate is %g; expected 0, or 0.0001 to 0.05",
+                           static_cast<double>(info.maxLate));
   auto view = core::makeUnique<CameraHistory>(context.host(), context, info.label);
   view->maxTriangles_ = info.maxTriangles ? info.maxTriangles : 1u << 22;
+  view->maxLate_ = info.maxLate;
+  VkDeviceSize words = view->words();
+  if (info.maxLate != 0) words = words * shader::kReuseArrays + shader::kStateWords;
   std::pmr::vector<std::byte> none(&context.host());
-  if (auto ok = view->makeResident(GPGP_SERVICE_VISIBILITY, std::move(none), VkDeviceSize(view->words()) * 4); !ok)
-    return ok.error();
+  if (auto ok = view->makeResident(GPGP_SERVICE_VISIBILITY, std::move(none), words * 4); !ok) return ok.error();
   return view;
 }
 

@@ -7,6 +7,7 @@
 #include "arguments.h"
 #include "spawned_scenes.h"
 #include "visibility_figures.h"
+#include "visibility_steady.h"
 
 #include "cli/model/model.h"
 #include "cli/shared/processors.h"
@@ -26,6 +27,7 @@ struct Options {
   bool clusters = false, newClusters = false, order = false;
   bool passes = false, exactOnly = false, figures = false, tables = false, views = false, walk = false;
   FigureOptions figure;
+  SteadyWalk steady;
   uint32_t crop[4] = {}; ///< width, height, left, top
   std::string out = ".";
   std::vector<std::string> scenes, plots;
@@ -222,6 +224,9 @@ const char* const kUsage =
     "visibility_bench --walk [--cell N] [--passes] [--small DIVISOR/VIEWS/REACH/MOST]... [...]\n"
     "  the cell of a walking viewer alone; a --cell of 32 or more: 17 x 17 view points\n"
     "  --small  views of a part of the width and height; metres; triangles of all views together, or 0\n"
+    "visibility_bench --steady FRAMES/UNITS/DEGREES/MAXLATE [...]\n"
+    "  a walk of so many frames with so many units and degrees in each: exact sampling that takes over decisions of\n"
+    "  the previous frame, as 60/0.025/0/0.005 does, beside exact and standard sampling of the same frames\n"
     "visibility_bench --views [...]\n"
     "  what a record of several view points of a cell costs against a record for each\n"
     "visibility_bench --plot FILE... --out FOLDER\n"
@@ -278,6 +283,10 @@ int runBench(bench::Arguments arguments) {
       options.views = true;
     } else if (arg == "--walk") {
       options.walk = true;
+    } else if (arg == "--steady") {
+      SteadyWalk& walk = options.steady;
+      scan("%u/%f/%f/%f%c", "60/0.025/0/0.005", &walk.frames, &walk.step, &walk.turn, &walk.maxLate);
+      if (walk.frames < 3) throw bench::Usage(arg + ": at least 3 frames");
     } else if (arg == "--small") {
       SmallViews& views = options.figure.views.emplace_back();
       scan("%u/%u/%f/%u%c", "8/80/0.06/4194304", &views.divisor, &views.count, &views.reach, &views.most);
@@ -314,6 +323,10 @@ int runBench(bench::Arguments arguments) {
     const std::string title = std::filesystem::path(name).stem().string();
     if (options.views) {
       benchViews(runner, title, options.figure.repeat);
+      continue;
+    }
+    if (options.steady.frames) {
+      printSteadyWalk(runner, title, options.steady);
       continue;
     }
     if (options.walk) {

@@ -34,6 +34,7 @@ struct Sampling {
   float reach = 0;                   ///< of method nearby, metres
   const DrawLists* lists = nullptr;  ///< what is sampled, instead of the scene
   const DrawLists* listed = nullptr; ///< out
+  GpgpHistory history = nullptr;
 };
 
 class Runner {
@@ -174,6 +175,50 @@ public:
     return result;
   }
 
+  /// Of the scene's triangles; maxLate: of the next recordings with it.
+  CameraHistory history(float maxLate) {
+    GpgpCameraHistoryCreateInfo info = GPGP_CAMERA_HISTORY_CREATE_INFO_INIT;
+    info.maxTriangles = std::max(triangles(), 1u);
+    info.maxLate = maxLate;
+    auto made = CameraHistory::create(context_.get(), info);
+    expect(made.code(), "history");
+    VkDeviceSize pending = 1;
+    while (pending)
+      submit([&](VkCommandBuffer cmd) {
+        expect(gpgpRecordUpload(context_.get(), cmd, &frames_.frame(), 0, &pending), "upload");
+      });
+    return std::move(*made);
+  }
+  std::vector<uint32_t> download() { return host::download<uint32_t>(device_, bits_, (triangles() + 31) / 32); }
+
+  /// One record into bits(), timed as a whole.
+  Run timed(VisibilityRecorder& recorder, const Sampling& sampling, const GpgpCamera& camera) {
+    const VolkDeviceTable& vk = device_.vk();
+    const VkQueryPoolCreateInfo queryInfo{
+        VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO, nullptr, 0, VK_QUERY_TYPE_TIMESTAMP, 2, 0};
+    VkQueryPool queries = VK_NULL_HANDLE;
+    host::check(vk.vkCreateQueryPool(device_.device(), &queryInfo, nullptr, &queries), "vkCreateQueryPool");
+    submit([&](VkCommandBuffer cmd) {
+      vk.vkCmdResetQueryPool(cmd, queries, 0, 2);
+      busy_.record(cmd);
+      host::fullBarrier(device_, cmd);
+      vk.vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries, 0);
+      expect(recorder.recordPrepare(cmd, frames_.frame(), infoOf(sampling, {&camera, 1}, bits_, nullptr)), "record");
+      vk.vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries, 1);
+    });
+    uint64_t timestamps[2];
+    host::check(vk.vkGetQueryPoolResults(device_.device(), queries, 0, 2, sizeof timestamps, timestamps, 8,
+                                         VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+                "vkGetQueryPoolResults");
+    vk.vkDestroyQueryPool(device_.device(), queries, nullptr);
+    Run result;
+    result.milliseconds =
+        static_cast<double>(timestamps[1] - timestamps[0]) * double(device_.properties().limits.timestampPeriod) * 1e-6;
+    submit([](VkCommandBuffer) {});
+    collect(recorder, result.report);
+    return result;
+  }
+
   /// Records that unite cameras into bits(), each with `perRecord` of them: their milliseconds and pairs together. A
   /// later record asks a little less, as what is visible already needs no answer.
   Run measureUnion(VisibilityRecorder& recorder, Sampling sampling, std::span<const GpgpCamera> cameras,
@@ -281,6 +326,7 @@ private:
                             const host::Buffer* counts) const {
     GpgpVisibilityInfo info = GPGP_VISIBILITY_INFO_INIT;
     info.geometrySet = geometry_.get();
+    info.history = sampling.history;
     info.method = sampling.method;
     info.camera = cameras.empty() ? camera_ : cameras[0];
     if (cameras.size() > 1) {

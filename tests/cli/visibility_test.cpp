@@ -279,6 +279,11 @@ TEST(CliVisibility, WrongUsage) {
                                              {"--motion", "1,2"},
                                              {"--motion", "1,-2,3"},
                                              {"--eyes", "0.06"},
+                                             {"--walk", "1,2,30"}, // of exact sampling
+                                             {"--method", "exact", "--walk", "1,2"},
+                                             {"--method", "exact", "--walk", "1,2,2"},
+                                             {"--method", "exact", "--walk", "1,2,30,0.5"},
+                                             {"--method", "exact", "--walk", "1,2,30", "--motion", "1,2,3"},
                                              {"--distance", "3"},
                                              {"--orbit", "2", "--yaw", "10"},
                                              {"--orbit", "2", "--pitch", "10"},

@@ -484,6 +484,32 @@ TEST(CliVisibilityViews, ReversedDepth) {
   EXPECT_EQ(count(host::readPng(overlay.path()), isGreen), 96u * 96);
 }
 
+TEST(CliVisibilityViews, WalksTakeDecisionsOver) {
+  const TemporaryFile model("walk.obj", ball());
+  const auto walk = [&](const char* how) {
+    return gpgpJson({"visibility", model.path(), "--size", "48x48", "--method", "exact", "--walk", how})["walk"];
+  };
+  const json still = walk("0,0,4");
+  ASSERT_EQ(still["frames"].size(), 4u);
+  for (size_t k = 0; k < 4; ++k) {
+    const json& frame = still["frames"][k];
+    EXPECT_GT(frame["allPixels"], 100) << k;
+    EXPECT_GT(frame["visible"], 1000) << k;
+    EXPECT_EQ(frame["late"], 0) << k;
+    EXPECT_EQ(frame["kept"], 0) << k;
+    EXPECT_EQ(frame["decided"], k ? json(0) : frame["allDecided"]) << k;
+    EXPECT_EQ(frame["decidedPixels"], k ? json(0) : frame["allPixels"]) << k;
+  }
+  EXPECT_EQ(still["decidedPixels"], 0);
+  // One degree a second.
+  const json slow = walk("0,1,12,0.02");
+  ASSERT_EQ(slow["frames"].size(), 12u);
+  EXPECT_LT(slow["decided"], 0.7);
+  EXPECT_LT(slow["decidedPixels"], 0.9);
+  EXPECT_LE(slow["late"], 0.02);
+  EXPECT_LE(slow["kept"], 0.02);
+}
+
 TEST(CliVisibilityViews, WhatIsWrongWithCameras) {
   const TemporaryFile model("wrong_cameras.obj", kHidden);
   const std::string good = textOf(plainCamera());

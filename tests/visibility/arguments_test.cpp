@@ -199,6 +199,12 @@ TEST_F(ArgumentsTest, CreationIsChecked) {
   GpgpHistory view = nullptr;
   viewInfo.maxTriangles = 0x80000001u;
   expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateCameraHistory(context, &viewInfo, &view), "maxTriangles");
+  viewInfo.maxTriangles = 64;
+  for (const float late : {-0.001f, 0.00001f, 0.06f, std::nanf("")}) {
+    viewInfo.maxLate = late;
+    expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateCameraHistory(context, &viewInfo, &view), "maxLate");
+  }
+  viewInfo.maxLate = 0;
   expect(GPGP_ERROR_INVALID_ARGUMENT, gpgpCreateCameraHistory(context, &viewInfo, nullptr), "history is NULL");
   viewInfo.sType = 1;
   expect(GPGP_ERROR_INVALID_STRUCT, gpgpCreateCameraHistory(context, &viewInfo, &view), "sType");

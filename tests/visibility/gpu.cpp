@@ -100,10 +100,11 @@ GpgpAsset VisibilityGpuTest::createGeometrySet(const Scene& scene) {
   return set;
 }
 
-GpgpHistory VisibilityGpuTest::createView(uint32_t maxTriangles) {
+GpgpHistory VisibilityGpuTest::createView(uint32_t maxTriangles, float maxLate) {
   GpgpCameraHistoryCreateInfo info = GPGP_CAMERA_HISTORY_CREATE_INFO_INIT;
   info.label = "camera";
   info.maxTriangles = maxTriangles;
+  info.maxLate = maxLate;
   GpgpHistory view = nullptr;
   EXPECT_EQ(gpgpCreateCameraHistory(context, &info, &view), GPGP_SUCCESS);
   return view;
@@ -285,6 +286,7 @@ GpuResult VisibilityGpuTest::sample(Scene& scene, GpgpRecorder handle, GpgpAsset
     }
     const auto counters = host::download<shader::Counters>(device, scratch, 1, offsets[shader::kBindCounters])[0];
     result.chunks = counters.chunks, result.keptChunks = counters.keptCount;
+    result.reuseFirst = counters.reuseFirst, result.reuseShare = counters.reuseShare;
   }
   return result;
 }

@@ -36,6 +36,7 @@ struct GpuResult {
   std::vector<uint32_t> changed;           ///< with a view: the whole buffer
   std::vector<uint32_t> depth, ids;        ///< from the scratch buffer
   uint32_t chunks = 0, keptChunks = 0;     ///< likewise
+  uint32_t reuseFirst = 0, reuseShare = 0; ///< likewise: the arc of groups that were decided (reuse.h)
   GpgpVisibilityReport report = GPGP_VISIBILITY_REPORT_INIT;
 };
 
@@ -62,7 +63,7 @@ struct VisibilityGpuTest : DeviceTest {
                               uint32_t maxPairs = 0, uint32_t maxCameras = 0, uint32_t maxDraws = 0,
                               uint32_t maxNonOpaque = 0);
   GpgpAsset createGeometrySet(const Scene& scene);
-  GpgpHistory createView(uint32_t maxTriangles);
+  GpgpHistory createView(uint32_t maxTriangles, float maxLate = 0);
   /// Copies all that is pending.
   void upload();
   /// An info with everything but outputs and view.

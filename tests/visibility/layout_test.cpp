@@ -45,7 +45,7 @@ std::map<std::string, size_t> offsetsOf(std::span<const uint32_t> module, const 
 
 TEST(Layout, ParamsAgree) {
   for (const auto& offsets : {offsetsOf(named_small, "Params"), offsetsOf(named_finish, "Params")}) {
-    EXPECT_EQ(offsets.size(), 66u);
+    EXPECT_EQ(offsets.size(), 70u);
     EXPECT_OFFSET(offsets, Params, cameraLayers);
     EXPECT_OFFSET(offsets, Params, alphaTests);
     EXPECT_OFFSET(offsets, Params, nonOpaqueAt);
@@ -69,12 +69,13 @@ TEST(Layout, ParamsAgree) {
     EXPECT_OFFSET(offsets, Params, hasOrigins);
     EXPECT_OFFSET(offsets, Params, hasNumbers);
     EXPECT_OFFSET(offsets, Params, clusterCount);
+    EXPECT_OFFSET(offsets, Params, maxLate);
   }
 }
 
 TEST(Layout, CountersAgree) {
   for (const auto& offsets : {offsetsOf(named_large, "Counters"), offsetsOf(named_finish, "Counters")}) {
-    EXPECT_EQ(offsets.size(), 57u);
+    EXPECT_EQ(offsets.size(), 68u);
     EXPECT_OFFSET(offsets, Counters, nonOpaque);
     EXPECT_OFFSET(offsets, Counters, nonOpaqueArgs);
     EXPECT_OFFSET(offsets, Counters, triangles);
@@ -93,6 +94,8 @@ TEST(Layout, CountersAgree) {
     EXPECT_OFFSET(offsets, Counters, onScreenArgs);
     EXPECT_OFFSET(offsets, Counters, longArgs);
     EXPECT_OFFSET(offsets, Counters, keptArgs);
+    EXPECT_OFFSET(offsets, Counters, decidedPixels);
+    EXPECT_OFFSET(offsets, Counters, dueStale);
   }
   EXPECT_EQ(offsetof(shader::Counters, ended) + 4, shader::kReportWords * 4);
 }

@@ -9,6 +9,7 @@ layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters
 #include "visibility/exact/lists.glsl"
 #include "visibility/shared/grid.glsl"
 #include "visibility/exact/tile_pairs.glsl"
+#include "visibility/reuse/reuse.glsl"
 
 shared uint groupPairs;
 shared uint firstPair;
@@ -23,6 +24,13 @@ void main() {
     uint camera = place >> 24u;
     Candidate c = readCandidate(index);
     bool seen = isSeen(c.id);
+    bool reused = !seen && isReused(c.id);
+    if (slice == 0u && gl_LocalInvocationIndex == 0u && !seen) {
+      if (reused) atomicAdd(counters.reused, 1u);
+      else atomicAdd(counters.decided, 1u);
+    }
+    if (reused && wasVisible(c.id)) retain(c.id);
+    seen = seen || reused; // is not asked about
     ScreenTriangle t = triangleOf(c);
     ivec2 s0 = edgeSlope(t.p1, t.p2);
     ivec2 s1 = edgeSlope(t.p2, t.p0);

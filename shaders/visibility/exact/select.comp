@@ -7,6 +7,7 @@
 #include "visibility/exact/lists.glsl"
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 #include "visibility/exact/tile_pairs.glsl"
+#include "visibility/reuse/reuse.glsl"
 #include "visibility/shared/texture.glsl"
 layout(constant_id = 3) const bool kNonOpaque = true; // some recordings have triangles that are not opaque
 layout(local_size_x = 64) in;
@@ -15,6 +16,8 @@ layout(std430, set = 0, binding = kBindQueue) readonly buffer QueueBuffer { uint
 
 shared uint groupCandidates;
 shared uint groupPairs;
+shared uint groupDecided;
+shared uint groupReused;
 shared uint firstCandidate;
 shared uint firstPair;
 
@@ -54,6 +57,8 @@ void main() {
     if (gl_LocalInvocationIndex == 0u) {
       groupCandidates = 0u;
       groupPairs = 0u;
+      groupDecided = 0u;
+      groupReused = 0u;
     }
     barrier();
     ScreenTriangle t;
@@ -70,11 +75,20 @@ void main() {
       id = f.id;
       if (classifyCandidate(f, t, fine) != kClipped) {
         ivec4 bounds = pixelBounds(t.p0, t.p1, t.p2, gridOf(f.camera));
+        meet(id);
         seen = isSeen(id);
+        bool reused = !seen && isReused(id);
         bool open = kNonOpaque && isNonOpaque(f.flags);
-        bool hides = !(open && seen && isSeeThrough(f.flags)); // or is asked about
+        bool hides = !(open && (seen || reused) && isSeeThrough(f.flags)); // or is asked about
         if (open) places = 2u;
-        if (hides && (seen || mayShow(t, bounds, f.camera))) {
+        bool isCandidate = seen || mayShow(t, bounds, f.camera);
+        if (!seen && isCandidate) {
+          if (reused) atomicAdd(groupReused, 1u);
+          else atomicAdd(groupDecided, 1u);
+        }
+        if (reused && isCandidate && wasVisible(id)) retain(id); // unless limits hide it
+        seen = seen || reused;                                  // is not asked about
+        if (hides && isCandidate) {
           tiles = tilesOf(bounds, f.camera);
           candidate = atomicAdd(groupCandidates, places);
           pair = atomicAdd(groupPairs, tiles.z);
@@ -86,6 +100,8 @@ void main() {
       firstCandidate = atomicAdd(counters.candidates, groupCandidates);
       firstPair = atomicAdd(counters.tilePairs, groupPairs);
     }
+    if (gl_LocalInvocationIndex == 0u && groupDecided != 0u) atomicAdd(counters.decided, groupDecided);
+    if (gl_LocalInvocationIndex == 0u && groupReused != 0u) atomicAdd(counters.reused, groupReused);
     barrier();
     if (tiles.z != 0u) {
       candidate += firstCandidate;

@@ -9,6 +9,7 @@ layout(local_size_x = 64) in;
 layout(std430, set = 0, binding = kBindQueue) readonly buffer QueueBuffer { uint queue[]; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
 layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
+#include "visibility/reuse/reuse.glsl"
 #include "visibility/exact/candidates.glsl"
 #include "visibility/shared/texture.glsl"
 layout(constant_id = 3) const bool kNonOpaque = true; // some recordings have triangles that are not opaque
@@ -46,6 +47,7 @@ void main() {
     uint item;
     uint number = queue[params.maxItems * 2u - 1u - entry];
     Fetched f = fetchNumber(number, item);
+    meet(f.id);
     ScreenTriangle t;
     Corners fine;
     uint fate = classifyCandidate(f, t, fine);

@@ -6,10 +6,32 @@ layout(local_size_x = 1) in;
 
 layout(std140, set = 0, binding = kBindParams) uniform ParamsBuffer { Params params; };
 layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer { Counters counters; };
+#include "visibility/reuse/reuse.glsl"
 layout(std430, set = 0, binding = kBindChanged) writeonly buffer ChangedBuffer { uint changed[]; };
 layout(std430, set = 0, binding = kBindCount) writeonly buffer CountBuffer { uint countAndArgs[]; };
 
+/// What the next recording of the history compares with.
+void rememberState() {
+  uint share = counters.reuseShare;
+  bool wasValid = viewBits[stateAt(kStateIsValid)] != 0u && viewBits[stateAt(kStateKey)] == params.reuseKey;
+  viewBits[stateAt(kStateIsValid)] = params.reuse;
+  if (params.reuse == 0u) return;
+  viewBits[stateAt(kStateKey)] = params.reuseKey;
+  viewBits[stateAt(kStateChecksum)] = counters.checksum[0];
+  viewBits[stateAt(kStateChecksum) + 1u] = counters.checksum[1];
+  viewBits[stateAt(kStateFirst)] = endOfArc(viewBits[stateAt(kStateFirst)], share);
+  float rate = uintBitsToFloat(viewBits[stateAt(kStateRate)]);
+  rate = rateAfter(rate, share, max(counters.dueLate, counters.dueStale), counters.dueVisible, wasValid);
+  viewBits[stateAt(kStateRate)] = floatBitsToUint(rate);
+  if (share == 0u) return;
+  viewBits[stateAt(kStateIsSettled)] = share == kReuseAll ? 1u : 0u;
+  viewBits[stateAt(kStateTriangles)] = counters.decided + counters.reused;
+  viewBits[stateAt(kStateUnresolved)] = counters.unresolved;
+}
+
 void main() {
+  counters.decidedPixels = counters.openCount + counters.longCount;
+  if (params.keepsDecisions != 0u) rememberState();
   uint listed = min(counters.visible, params.listCapacity);
   counters.listed = listed;
   // Pairs of tiles that found no room were not looked at: so many would have.

@@ -26,6 +26,12 @@ void change(uint place, uint word, uint which) {
     changed[kChangedHeader + place++] = word * 32u + uint(findLSB(which));
 }
 
+/// What is on the screen now was there before the next recording. Where all was taken over, that has not changed.
+void remember(uint word) {
+  if (params.reuse != 0u && counters.reuseShare != 0u) viewBits[knownAt(word)] = viewBits[metAt(word)];
+  viewBits[metAt(word)] = 0u;
+}
+
 void main() {
   uint lane = gl_LocalInvocationIndex;
   uvec3 before = uvec3(0u);
@@ -50,6 +56,7 @@ void main() {
     change(place.y, word, c.appeared);
     change(place.z, word, c.disappeared);
     if ((c.appeared | c.disappeared) != 0u) viewBits[word] = c.now;
+    if (params.keepsDecisions != 0u && word < blockEnd() && word < params.viewWords) remember(word);
     for (uint now = c.now; now != 0u && place.x < params.listCapacity; now &= now - 1u)
       list[place.x++] = word * 32u + uint(findLSB(now));
   }

@@ -7,8 +7,8 @@ layout(std430, set = 0, binding = kBindCounters) buffer CounterBuffer {
   Counters counters;
   uint blocks[]; // of each part: visible, appeared, disappeared
 };
+#include "visibility/reuse/reuse.glsl"
 layout(std430, set = 0, binding = kBindBits) readonly buffer BitBuffer { uint bits[]; };
-layout(std430, set = 0, binding = kBindView) buffer ViewBuffer { uint viewBits[]; };
 
 uint bitWords() { return (params.triangleCount + 31u) / 32u; }
 uint allWords() { return max(bitWords(), params.viewWords); }

@@ -204,7 +204,11 @@ struct Params {
   uint textureCount;    // that the range holds
   uint maxNonOpaque;    // room for triangles that are not opaque
   uint nonOpaqueAt;     // where that begins in the queue
-  uint changedCapacity; // triangles that the list of changes has room for; a uniform block is a multiple of 16 bytes
+  uint changedCapacity; // triangles that the list of changes has room for
+  uint keepsDecisions;  // 1: the history has more than what was visible (reuse.h)
+  uint reuse;           // 1: this recording takes decisions over
+  uint reuseKey;        // of what a recording must have in common with the previous one for that
+  float maxLate;        // GpgpCameraHistoryCreateInfo; a uniform block is a multiple of 16 bytes
 };
 GPGP_CONST uint kHasReferenceCounts = 1u;
 GPGP_CONST uint kHasRecheck = 2u;
@@ -270,13 +274,16 @@ struct Counters {
   uint falsePositives;
   uint referenceArea[2]; // samples: low word, high word
   uint foundArea[2];
-  uint nonOpaque;   // triangles of alpha-tested and see-through draws, on the screen; whatever their budget
-  uint changed;     // written to the list of changes
-  uint ended;       // 1: the device has ended loops before their time (core/turns.h)
-  uint drawChunks;  // of one camera's draws
-  uint chunks;      // of all draws
-  uint queueCount;  // triangles that one invocation should not draw alone
-  uint mediumCount; // records asked for
+  uint nonOpaque;     // triangles of alpha-tested and see-through draws, on the screen; whatever their budget
+  uint changed;       // written to the list of changes
+  uint decided;       // exact: triangles on the screen but at no pixel's centre that are decided
+  uint reused;        // and those whose last decision is taken over
+  uint decidedPixels; // that have lists
+  uint ended;         // 1: the device has ended loops before their time (core/turns.h)
+  uint drawChunks;    // of one camera's draws
+  uint chunks;        // of all draws
+  uint queueCount;    // triangles that one invocation should not draw alone
+  uint mediumCount;   // records asked for
   uint largeCount;
   uint smallArgs[3]; // indirect dispatches
   uint unfoldArgs[3];
@@ -305,9 +312,17 @@ struct Counters {
   uint keptCount; // chunks that may be in sight
   uint keptArgs[3];
   uint nonOpaqueArgs[3];
+  uint checksum[2]; // with reuse: of all triangles on the screen
+  uint reuseSeen;   // triangles at pixel centres
+  uint reuseFresh;  // of these, not visible in the previous recording
+  uint reuseFirst;  // of the circle of groups: where those begin that are decided
+  uint reuseShare;  // and how much of it they take
+  uint dueVisible;  // of these groups: triangles that are visible
+  uint dueLate;     // that were on the screen and not visible before
+  uint dueStale;    // that were visible and are still on the screen
 };
-GPGP_CONST uint kCounterWords = 91u;
-GPGP_CONST uint kReportWords = 27u;
+GPGP_CONST uint kCounterWords = 103u;
+GPGP_CONST uint kReportWords = 30u;
 
 /// Whether a draw's triangles may leave open what lies behind them.
 GPGP_FN bool isNonOpaque(uint flags) { return (flags & (kSeeThrough | kAlphaTestBits)) != 0u; }
@@ -329,7 +344,7 @@ GPGP_FN uvec3 listGroups(uint listed) {
 #ifdef __cplusplus
 static_assert(kListGroup == 64);
 static_assert(sizeof(Mesh) == 12 && sizeof(Draw) == 64 &&
-              sizeof(Params) == kMaxCameras * 116 + kMaxOrigins * 32 + kMaxAlphaTests * 8 + 60 * 4 &&
+              sizeof(Params) == kMaxCameras * 116 + kMaxOrigins * 32 + kMaxAlphaTests * 8 + 64 * 4 &&
               sizeof(DrawEntry) == 4 * kEntryWords && sizeof(Candidate) == 64 && sizeof(Surface) == 20 &&
               sizeof(Counters) == 4 * kCounterWords);
 #endif

@@ -13,6 +13,7 @@
 #include "visibility/shared/chunks.glsl"
 #include "visibility/standard/pixels.glsl"
 #include "visibility/standard/draw_small.glsl"
+#include "visibility/reuse/reuse.h"
 layout(local_size_x = 64) in; // kChunk
 
 layout(std430, set = 0, binding = kBindQueue) writeonly buffer QueueBuffer { uint queue[]; };
@@ -20,6 +21,7 @@ layout(std430, set = 0, binding = kBindBits) buffer BitBuffer { uint bits[]; };
 
 shared uint groupTriangles;
 shared uint groupSkipped;
+shared uvec2 groupChecksum;
 shared uint groupWinners;
 shared uint groupOnScreen;
 shared uint groupLarge;
@@ -33,10 +35,12 @@ void main() {
   if (gl_LocalInvocationIndex == 0u) {
     groupTriangles = 0u;
     groupSkipped = 0u;
+    groupChecksum = uvec2(0u);
   }
   uint kept = keptCount();
   uint triangles = 0u;
   uint skipped = 0u;
+  uvec2 checksum = uvec2(0u);
   for (uint i = gl_WorkGroupID.x; i < kept; i += gl_NumWorkGroups.x) {
     uint chunk = keptChunk(i);
     uint drawIndex = findChunk(chunk);
@@ -90,6 +94,8 @@ void main() {
         bool listed = !open || params.maxNonOpaque != 0u;
         if (isLargeCandidate && listed) large = atomicAdd(groupLarge, 1u);
         else if (reaches && listed) onScreen = atomicAdd(groupOnScreen, 1u);
+        if (params.reuse != 0u && (onSamples || fate == kClipped))
+          checksum += checksumOf(f.id, f.flags, f.mirrored, f.a, f.b, f.c);
       }
       if (open && (onSamples || fate == kClipped)) nonOpaque = atomicAdd(groupNonOpaque, 1u);
     }
@@ -127,9 +133,17 @@ void main() {
   barrier();
   if (triangles != 0u) atomicAdd(groupTriangles, triangles);
   if (skipped != 0u) atomicAdd(groupSkipped, skipped);
+  if ((checksum.x | checksum.y) != 0u) {
+    atomicAdd(groupChecksum.x, checksum.x);
+    atomicAdd(groupChecksum.y, checksum.y);
+  }
   barrier();
   if (gl_LocalInvocationIndex == 0u) {
     if (groupTriangles != 0u) atomicAdd(counters.triangles, groupTriangles);
     if (groupSkipped != 0u) atomicAdd(counters.skippedTriangles, groupSkipped);
+    if (params.reuse != 0u) {
+      atomicAdd(counters.checksum[0], groupChecksum.x);
+      atomicAdd(counters.checksum[1], groupChecksum.y);
+    }
   }
 }

@@ -31,6 +31,20 @@ Motion parseMotion(const std::string& text) {
   return motion;
 }
 
+Walk parseWalk(const std::string& text) {
+  Walk walk;
+  char rest = 0;
+  const int read =
+      std::sscanf(text.c_str(), "%f,%f,%u,%f%c", &walk.speed, &walk.turn, &walk.frames, &walk.maxLate, &rest);
+  if (read < 3 || read > 4 || !(std::abs(walk.speed) <= 1e6f) || !(std::abs(walk.turn) <= 1080) || walk.frames < 3 ||
+      walk.frames > 100000 || !(walk.maxLate >= 0.0001f && walk.maxLate <= 0.05f))
+    throw CLI::ValidationError("--walk", "'" + text +
+                                             "' is not SPEED,TURN,FRAMES or SPEED,TURN,FRAMES,LATE: world units per "
+                                             "second along the view, degrees per second up to 1080, 3 to 100000 "
+                                             "frames, a share of 0.0001 to 0.05");
+  return walk;
+}
+
 /// "N" or "WxH", multiples of 128 up to 8192.
 Size parseAtlas(const std::string& text) {
   const Size size = parseSize(text.find('x') == std::string::npos ? text + 'x' + text : text);
@@ -143,6 +157,17 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
               "compares with what viewers see at the picture's size")
           ->type_name("SPEED,TURN,LATENCY")
           ->excludes(cell);
+  CLI::Option* walk =
+      command
+          .add_option_function<std::string>(
+              "--walk", [&options](const std::string& text) { options.walk = parseWalk(text); },
+              "Exact: a viewer who walks from the first camera's place, 60 frames a second; each frame takes over "
+              "decisions of the previous one, and is compared with sampling that decides all. World units per second "
+              "along the view, degrees per second to the right, frames; the share of the visible triangles that may "
+              "be late (0.005)")
+          ->type_name("SPEED,TURN,FRAMES[,LATE]")
+          ->excludes(cell)
+          ->excludes(motion);
   command.add_option("--eyes", options.eyes, "Distance between two eyes, in world units")
       ->check(within(0.0, 1e6))
       ->needs(motion);
@@ -188,7 +213,8 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
                                "--atlas", [&options](const std::string& text) { options.atlas = parseAtlas(text); },
                                "Allocate a shading atlas of N x N texels (or WxH) for what the first camera sees; with "
                                "--repeat, every other recording leaves out one pair of triangles in 64")
-                           ->type_name("N");
+                           ->type_name("N")
+                           ->excludes(walk);
   command.add_option("--texels", options.texelsPerPixel, "Texels of the atlas for each pixel of a triangle's area")
       ->check(within(1.0 / 1024, 64.0))
       ->capture_default_str()
@@ -204,7 +230,9 @@ void addVisibilityOptions(CLI::App& command, VisibilityOptions& options) {
       ->type_name("FILE.png")
       ->needs(atlas);
   // What would have no effect is an error: who gives it expects one.
-  command.callback([&options, conservative, samples, recheck] {
+  command.callback([&options, conservative, samples, recheck, walk] {
+    if (walk->count() && options.method != "exact")
+      throw CLI::ValidationError(walk->get_name(), "belongs to --method exact");
     for (const CLI::Option* option : conservative)
       if (option->count() && options.method != "conservative")
         throw CLI::ValidationError(option->get_name(), "belongs to --method conservative");
@@ -222,6 +250,7 @@ Examples:
   gpgp visibility bunny.obj --yaw 90 --image seen.png
   gpgp visibility engine.glb --size 1920x1080 --repeat 100 --json | jq .visible
   gpgp visibility engine.glb --method exact --orbit 8 --reference 64 --overlay seen.png
+  gpgp visibility engine.glb --method exact --walk 1.5,0,120 --json
   gpgp visibility engine.glb --method exact --atlas 4096 --repeat 100 --out atlas.png --display shown.png
 
 Without --camera and --orbit the camera looks at the middle of the model's bounding box from --yaw degrees around it (0:

@@ -15,6 +15,14 @@ struct Motion {
   float latency = 0; ///< milliseconds until the result is no longer displayed
 };
 
+/// How the viewer of --walk moves, 60 frames a second.
+struct Walk {
+  float speed = 0;      ///< along the view, world units per second
+  float turn = 0;       ///< to the right, degrees per second
+  uint32_t frames = 60; ///< at least 3
+  float maxLate = 0.005f;
+};
+
 struct VisibilityOptions {
   std::string model, image, overlay, exportIds, camera, out, display, method = "standard", cell,
                                                                       referenceDevice = "gpu";
@@ -27,6 +35,7 @@ struct VisibilityOptions {
   Size atlas;               ///< texels; 0: none
   float texelsPerPixel = 1; ///< of the atlas
   std::optional<Motion> motion;
+  std::optional<Walk> walk;
   float eyes = 0;       ///< of a motion
   uint32_t viewers = 8; ///< that see what a motion's cameras are compared with
   bool twoSided = false;

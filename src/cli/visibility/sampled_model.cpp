@@ -113,6 +113,7 @@ Measured<GpgpVisibilityReport> SampledModel::sample(VisibilityRecorder& recorder
                             GpgpVisibilityInfo info = GPGP_VISIBILITY_INFO_INIT;
                             info.base = base;
                             info.geometrySet = geometry_;
+                            info.history = step.history;
                             info.method = step.method;
                             std::copy_n(glm::value_ptr(step.view.camera), 16, info.camera.viewProjection);
                             info.camera.reversedDepth = step.view.reversed;

@@ -40,6 +40,7 @@ public:
     Size size; ///< of the viewport; 0: the options'
     uint32_t samples = 0, slice = 0, repeat = 1;
     bool accumulate = false, sizes = false;
+    GpgpHistory history = nullptr;
     const char* label = "sampling";
   };
   Measured<GpgpVisibilityReport> sample(VisibilityRecorder& recorder, const Step& step);

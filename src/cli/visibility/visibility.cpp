@@ -7,6 +7,7 @@
 #include "cli/visibility/motion.h"
 #include "cli/visibility/pictures.h"
 #include "cli/visibility/reference.h"
+#include "cli/visibility/walk.h"
 #include "host/files.h"
 
 #include <algorithm>
@@ -121,6 +122,7 @@ struct Figures {
   std::vector<uint32_t> found, first;       ///< of all cameras together; of the first one
   std::optional<AtlasFigures> atlas;        ///< of the first one
   std::optional<MotionFigures> motion;      ///< of the first one
+  std::optional<WalkFigures> walk;          ///< from the first one's place
 
   /// Metrics of one camera of `cameras`; areas of the reference's triangles, in samples.
   void addMetrics(const GpgpVisibilityReport& metrics, const std::vector<uint32_t>& areas, uint32_t cameras) {
@@ -206,6 +208,8 @@ Figures measure(Session& session, const VisibilityOptions& options, const Cell& 
     const std::vector<uint32_t> found = scene.bits();
     figures.add(last, found, cameras);
     if (k == 0 && motion) figures.motion = measureMotion(scene, recorder, options, model, *motion, view, found);
+    if (k == 0 && options.walk)
+      figures.walk = measureWalk(session, scene, recorder, *options.walk, view, model.triangleCount);
     if (k == 0 && options.atlas.width) figures.atlas = allocateAtlas(session, options, scene, model, corners, view);
 
     const bool overlay = !options.overlay.empty() && k == 0;
@@ -272,6 +276,7 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
   text << "; GPU " << milliseconds(figures.times.median) << " (median of " << figures.times.repeats << ") on " << device
        << '\n';
   if (figures.motion) text << figures.motion->text(figures.times.median);
+  if (figures.walk) text << figures.walk->text();
   if (options.reference && !figures.motion)
     text << (options.referenceDevice == "cpu" ? "reference by rays " : "reference ") << countText(figures.reference)
          << ": coverage " << figures.coverage.text() << ", overestimation " << figures.overestimation.text()
@@ -317,6 +322,7 @@ Outcome outcomeOf(const VisibilityOptions& options, const Model& model, const Fi
                   {"gpu_ms_median", figures.times.median},
                   {"passes", figures.times.passesByName()}};
   if (figures.motion) outcome.json["motion"] = figures.motion->json();
+  if (figures.walk) outcome.json["walk"] = figures.walk->json();
   if (figures.atlas) outcome.json["atlas"] = jsonOf(options, *figures.atlas);
   return outcome;
 }

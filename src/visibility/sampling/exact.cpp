@@ -45,9 +45,11 @@ void addExact(core::PassList& list, const Budgets& budgets, const core::Device& 
                                           {kBindTextureCoordinates, read},
                                           {kBindBits, readWrite},
                                           {kBindCandidates, write},
-                                          {kBindSlots, readWrite}},
+                                          {kBindSlots, readWrite},
+                                          {kBindView, readWrite}},
                                          kBindCounters, offsetof(Counters, selectLargeArgs)))
       .beside = true;
+  addReuse(list);
   fetchesTriangles(list.dispatchIndirect("select", addShader(list, "select", visibility_select, {0, 1, 1, nonOpaque}),
                                          {{kBindQueue, read},
                                           {kBindSlots, readWrite},
@@ -55,7 +57,8 @@ void addExact(core::PassList& list, const Budgets& budgets, const core::Device& 
                                           {kBindBits, readWrite},
                                           {kBindTextureCoordinates, read},
                                           {kBindCandidates, write},
-                                          {kBindPairs, write}},
+                                          {kBindPairs, write},
+                                          {kBindView, readWrite}},
                                          kBindCounters, offsetof(Counters, onScreenArgs)));
   list.dispatchIndirect("bin large", addShader(list, "bin large", visibility_bin_large),
                         {{kBindParams, read},
@@ -63,10 +66,16 @@ void addExact(core::PassList& list, const Budgets& budgets, const core::Device& 
                          {kBindCounters, readWrite},
                          {kBindBits, readWrite},
                          {kBindCandidates, read},
-                         {kBindPairs, write}},
+                         {kBindPairs, write},
+                         {kBindView, readWrite}},
                         kBindCounters, offsetof(Counters, binLargeArgs));
   list.dispatch("bin allocate", addShader(list, "bin allocate", visibility_bin_allocate),
-                {{kBindParams, read}, {kBindCounters, readWrite}, {kBindSlots, readWrite}}, kAllocateGroups);
+                {{kBindParams, read},
+                 {kBindCounters, readWrite},
+                 {kBindSlots, readWrite},
+                 {kBindBits, readWrite},
+                 {kBindView, readWrite}},
+                kAllocateGroups);
   list.dispatchIndirect("bin place", addShader(list, "bin place", visibility_bin_place),
                         {{kBindParams, read}, {kBindCounters, read}, {kBindSlots, readWrite}, {kBindPairs, readWrite}},
                         kBindCounters, offsetof(Counters, placeArgs));

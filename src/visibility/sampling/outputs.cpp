@@ -49,7 +49,11 @@ void addOutputs(core::PassList& list) {
                  {kBindView, readWrite}},
                 kListGroups);
   list.dispatch("finish", addShader(list, "finish", visibility_finish),
-                {{kBindParams, read}, {kBindCounters, readWrite}, {kBindChanged, write}, {kBindCount, write}},
+                {{kBindParams, read},
+                 {kBindCounters, readWrite},
+                 {kBindChanged, write},
+                 {kBindCount, write},
+                 {kBindView, readWrite}},
                 kOneGroup);
 }
 

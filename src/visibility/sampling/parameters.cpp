@@ -72,6 +72,20 @@ void setAlphaTests(const GpgpVisibilityInfo& info, Params& params) {
       verticesIn(info.textureCoordinates.size, params.textureOffset, format.bytes * 2, params.textureStride);
 }
 
+/// A recording of several cameras, or one that adds to others, decides all: the history has one decision a triangle.
+void setReuse(const GpgpVisibilityInfo& info, const Budgets& budgets, const CameraHistory* history, Params& params) {
+  if (!history || history->maxLate() <= 0) return;
+  params.keepsDecisions = 1;
+  params.maxLate = history->maxLate();
+  params.reuse = info.method == GPGP_SAMPLING_EXACT && !info.moreCameraCount && !info.accumulate && info.reach <= 0;
+  uint32_t key = 2166136261u;
+  for (const uint32_t part :
+       {info.width, info.height, info.camera.reversedDepth ? 1u : 0u, info.triangleCount, info.alphaTestCount,
+        budgets.maxTriangles, budgets.maxCandidates, budgets.maxPairs, budgets.maxNonOpaque})
+    key = (key ^ part) * 16777619u;
+  params.reuseKey = key;
+}
+
 /// Where the recording's samples lie in a pixel.
 void setGrid(const GpgpVisibilityInfo& info, const Budgets& budgets, Params& params) {
   const uint32_t samples = samplesOf(info), perRecord = std::min(samples, budgets.maxSamples),
@@ -192,6 +206,7 @@ Params parametersOf(const GpgpVisibilityInfo& info, const Budgets& budgets, cons
   params.hasExtents = info.triangleSizes.buffer ? 1 : 0;
   params.slotCapacity = static_cast<uint32_t>(budgets.slots());
   params.viewWords = history ? history->words() : 0;
+  setReuse(info, budgets, history, params);
   params.mediumRecords = budgets.mediumRecords();
   params.largeRecords = budgets.largeRecords();
   setGrid(info, budgets, params);

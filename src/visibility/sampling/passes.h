@@ -19,7 +19,7 @@ constexpr uint32_t kOneGroup = 0, kClearGroups = 1, kPixelGroups = 2, kWordGroup
 // Conditions of a recording.
 constexpr uint32_t kIfExact = 0, kIfCommands = 1, kIfDraws = 2, kIfExtents = 3, kIfConservative = 4, kIfSampling = 5,
                    kIfMeasuring = 6, kIfNearby = 7, kIfClusters = 8, kIfNonOpaque = 9, kIfAlphaTests = 10,
-                   kIfResolve = 11, kIfResolveAlpha = 12;
+                   kIfResolve = 11, kIfResolveAlpha = 12, kIfReuse = 13;
 
 constexpr uint32_t kMaxLargeCandidates = 1 << 20; ///< entries for candidates of more than 8 x 8 pixels
 constexpr uint32_t kMaxRefinements = 4;
@@ -36,6 +36,7 @@ core::PassList describePasses(const Budgets& budgets, const core::Device& device
 /// Bits of what is seen at the pixels' samples.
 void addStandard(core::PassList& list, const Budgets& budgets, const core::Device& device);
 void addExact(core::PassList& list, const Budgets& budgets, const core::Device& device);
+void addReuse(core::PassList& list); ///< of exact sampling's passes
 void addConservative(core::PassList& list, const Budgets& budgets);
 void addNearby(core::PassList& list);
 void addOutputs(core::PassList& list); ///< what follows the bits: lists, commands, triangles' sizes

@@ -111,6 +111,7 @@ Result<void> VisibilityRecorder::prepare(VkCommandBuffer commandBuffer, const Gp
   record.conditions[kIfConservative] = params.method == shader::kConservative;
   record.conditions[kIfNearby] = params.method == shader::kNearby;
   record.conditions[kIfExact] = params.method == shader::kExact;
+  record.conditions[kIfReuse] = params.reuse != 0;
   record.conditions[kIfAlphaTests] = params.alphaTestCount != 0;
   record.conditions[kIfNonOpaque] = params.alphaTestCount == 0;
   record.conditions[kIfResolve] = params.method == shader::kExact && params.alphaTestCount == 0;

@@ -29,6 +29,9 @@ bool VisibilityRecorder::takeSampleReport(GpgpVisibilityReport& report) {
   report.maxCandidates = budgets_.maxCandidates;
   report.maxPairs = budgets_.maxPairs;
   report.unresolved = counters.unresolved;
+  report.decided = counters.decided;
+  report.reused = counters.reused;
+  report.decidedPixels = counters.decidedPixels;
   report.neededDraws = counters.draws;
   report.draws = counters.drawsGiven;
   report.neededDrawTriangles = counters.drawTriangles;
