@@ -161,6 +161,25 @@ TEST(CliBake, SaysWhatIsNotDrawn) {
     EXPECT_NE(result.err.find(message["text"].get<std::string>()), std::string::npos) << result.err;
 }
 
+// What can be drawn is baked, but who asked for all of it is told by the exit code, too.
+TEST(CliBake, FailsWhereAPathIsTooMuch) {
+  std::string tangle = "<svg xmlns='http://www.w3.org/2000/svg' width='99' height='99'><rect width='9' height='9'/>\n"
+                       "<path d='M0 0";
+  uint32_t random = 1;
+  const auto next = [&] { return std::to_string((random = random * 1664525u + 1013904223u) >> 16); };
+  for (int i = 0; i < 20000; ++i) tangle += "L" + next() + " " + next();
+  const TemporaryFile drawing("tangle.svg", tangle + "z'/></svg>"), out("tangle.gpgpv");
+  for (const bool json : {false, true}) {
+    std::vector<std::string> line = {"bake", drawing.path(), "-o", out.path()};
+    if (json) line.push_back("--json");
+    const ProcessResult result = gpgp(line);
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_NE(result.err.find("tangle.svg:2:"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("gpgp bake: 1 error\n"), std::string::npos) << result.err;
+    EXPECT_GT(std::filesystem::file_size(out.path()), 0u);
+  }
+}
+
 TEST(CliBake, ReadsStyleSheetsBesideTheDrawingAndNowhereElse) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(testing::TempDir()) / "gpgp_cli_test_sheets", inside = folder / "drawings";

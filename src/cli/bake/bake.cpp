@@ -95,6 +95,8 @@ struct Baked {
   Bytes bytes;
   Json json = Json::object(); ///< what only this type tells
   std::string words;
+  std::string refusal = {}; ///< the first part of it that was left out because it is too much
+  size_t refusals = 0;
 };
 
 #ifdef GPGP_CLI_VECTOR
@@ -119,7 +121,7 @@ Baked bakeDrawing(const std::string& text, const std::string& file, const std::s
   Result<Blob> blob = compileSvg(source);
   if (!blob) throw Failure(messages.count() ? messages.failure() : name + ": " + blob.name());
   messages.finish();
-  return {std::move(*blob), {{"messages", messages.json()}}, {}};
+  return {std::move(*blob), {{"messages", messages.json()}}, {}, messages.firstRefusal(), messages.refusals()};
 }
 #endif
 
@@ -216,6 +218,8 @@ Outcome bake(const BakeOptions& options, const CommonOptions& common) {
     const std::string_view bytes = view(baked.bytes);
     if (options.out == kStandard) {
       outcome.text = bytes;
+      outcome.failure = baked.refusal;
+      outcome.errorsShown = baked.refusals;
       return outcome;
     }
     const std::string out =
@@ -225,6 +229,8 @@ Outcome bake(const BakeOptions& options, const CommonOptions& common) {
       if (other["out"] == out) throw Usage(file + ": another input goes to " + out + " as well");
     list.push_back({{"in", file}, {"type", type}, {"out", out}, {"bytes", bytes.size()}});
     list.back().update(baked.json);
+    if (outcome.failure.empty()) outcome.failure = baked.refusal;
+    outcome.errorsShown += baked.refusals;
     text << file << ": " << type << baked.words << ", " << bytes.size() << " bytes, " << out << '\n';
     files.emplace_back(out, std::move(baked));
   }

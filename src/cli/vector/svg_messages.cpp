@@ -1,6 +1,7 @@
 #include "cli/vector/svg_messages.h"
 #include "cli/shared/command.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -21,6 +22,9 @@ Json part(const std::string& label, const std::string& text, const std::string& 
   json["column"] = std::strtoul(label.c_str() + second + 1, nullptr, 10);
   if (label.substr(0, first) != drawing) json["file"] = label.substr(0, first); // a style sheet
   return json;
+}
+bool isRefusal(GpgpSeverity severity, GpgpResult code) {
+  return severity == GPGP_SEVERITY_ERROR && code == GPGP_ERROR_UNSUPPORTED;
 }
 const char* wordOf(GpgpSeverity severity) { return severity == GPGP_SEVERITY_ERROR ? "error" : "warning"; }
 } // namespace
@@ -45,6 +49,17 @@ void SvgMessages::finish() {
 
 std::string SvgMessages::failure() const {
   return list_.empty() ? std::string() : list_.back().label + ": " + list_.back().text;
+}
+
+size_t SvgMessages::refusals() const {
+  return static_cast<size_t>(
+      std::count_if(list_.begin(), list_.end(), [](const Message& m) { return isRefusal(m.severity, m.code); }));
+}
+
+std::string SvgMessages::firstRefusal() const {
+  for (const Message& m : list_)
+    if (isRefusal(m.severity, m.code)) return m.label + ": " + m.text;
+  return {};
 }
 
 Json SvgMessages::json() const {

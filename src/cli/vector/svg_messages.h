@@ -26,6 +26,9 @@ public:
   std::string failure() const;
 
   size_t count() const { return list_.size(); }
+  /// Of what is valid but too much, and was therefore left out.
+  size_t refusals() const;
+  std::string firstRefusal() const;
   /// Of all messages: severity, element, line, column and text; the file where it is a style sheet. Those of an
   /// animation have their place in the file instead of element, line and column.
   Json json() const;

@@ -316,7 +316,11 @@ Outcome vector(const VectorOptions& options, const CommonOptions& common) {
   if (options.reference) text << psnr << " dB against 256 samples a pixel by winding numbers\n";
   if (!options.out.empty()) text << "picture: " << options.out << '\n';
   outcome.text = text.str();
-  if (report.pathsDropped) outcome.failure = name + ": " + omitted(report, facts.paths, options.maxTileEntries != 0);
+  if (!report.pathsDropped) {
+    outcome.failure = messages.firstRefusal();
+    outcome.errorsShown = messages.refusals();
+  } else
+    outcome.failure = name + ": " + omitted(report, facts.paths, options.maxTileEntries != 0);
   outcome.json = {{"file", options.file},
                   {"device", device.name()},
                   {"status", statusName(report.base.status)},
