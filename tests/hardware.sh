@@ -79,7 +79,7 @@ pack() {
   cp -L /usr/lib/x86_64-linux-gnu/libvulkan.so.1 /usr/lib/x86_64-linux-gnu/libVkLayer_khronos_validation.so "$stage/lib/"
   cp "$layer" "$stage/lib/"
   find "$stage/lib" -name '*.so*' -exec strip --strip-unneeded {} +
-  git ls-files tests/data tests/golden samples shaders tests/hardware.sh | tar cf - -T - | tar xf - -C "$stage"
+  git ls-files tests/data tests/golden samples shaders docs/guide docs/internals tests/hardware.sh | tar cf - -T - | tar xf - -C "$stage"
   mkdir -p "$stage/tests/data/fetched"
   local part
   for part in "$@"; do
