@@ -3,6 +3,7 @@
 // This is the one part of a derivation that has no form for the GPU; programs that only compare and pass on the strings
 // of their text never add one.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <unordered_map>

@@ -1,6 +1,7 @@
 // Files inside a zip archive (APPNOTE 6.3: stored and deflated, without encryption and without ZIP64).
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>

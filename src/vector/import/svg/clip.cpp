@@ -61,7 +61,7 @@ Style Importer::styleOf(pugi::xml_node node, const LengthContext& lengths) {
 
 const std::vector<pugi::xml_node>& Importer::referencesIn(pugi::xml_node from, std::string Style::*property,
                                                           const LengthContext& lengths) {
-  const auto [known, isNew] = references_.try_emplace(from.hash_value());
+  const auto [known, isNew] = references_.try_emplace(std::pair(from.hash_value(), property == &Style::mask));
   std::vector<pugi::xml_node>& found = known->second;
   if (!isNew) return found;
   for (pugi::xml_node at = from; at && !stopped(at);) {

@@ -309,8 +309,8 @@ private:
   std::deque<std::string> sheetNames_;  // which places of messages refer to
   std::vector<std::string> openSheets_; // paths, each imported by the one before
   size_t sheetCount_ = 0, sheetBytes_ = 0;
-  std::unordered_map<size_t, GradientChain> chains_;                   // by their first
-  std::unordered_map<size_t, std::vector<pugi::xml_node>> references_; // of clipPaths and masks
+  std::unordered_map<size_t, GradientChain> chains_;                          // by their first
+  std::map<std::pair<size_t, bool>, std::vector<pugi::xml_node>> references_; // by element; true: to masks
   Imported result_;
   std::vector<pugi::xml_node> used_; // the <use> targets we are inside of
   size_t elements_ = 0, points_ = 0, work_ = 0, steps_ = 0;
