@@ -165,4 +165,93 @@ Result<void> Recorder::createSets(uint32_t slotCount) {
   return {};
 }
 
+void Recorder::writeDescriptors(uint32_t slot, uint32_t first, uint32_t groupCount,
+                                const std::array<Binding, kMaxResources>& bindings, VkBuffer scratch,
+                                VkDeviceSize scratchOffset, bool reports) const {
+  std::array<VkWriteDescriptorSet, kMaxResources> writes;
+  std::array<VkDescriptorBufferInfo, kMaxResources> buffers;
+  std::array<VkDescriptorImageInfo, kMaxResources> images;
+  uint32_t count = 0;
+  // Images and textures without a view, by resource: passes that use them are skipped. But lavapipe looks at all
+  // descriptors of a set when it is bound, and the images of an earlier recording may be gone.
+  uint64_t leftOut = 0;
+  const VkDescriptorSet textureSet = textureSets_.empty() ? VK_NULL_HANDLE : textureSets_[slot * passes_.texturePages];
+  for (uint32_t i = 0; i < passes_.resources.size(); ++i) {
+    const Resource& resource = passes_.resources[i];
+    const Binding& binding = bindings[i];
+    VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, VK_NULL_HANDLE, i,      0, 1,
+                               descriptorType(resource.kind),          nullptr, &buffers[i],    nullptr};
+    // What a recording leaves out is bound to a harmless range: passes that would use it are skipped or check a flag.
+    buffers[i] = {constants_.handle(), resource.written ? unusedOffset_ : 0,
+                  resource.written ? kUnusedBytes : std::clamp<VkDeviceSize>(passes_.constantsBytes, 16, kUnusedBytes)};
+    if (resource.kind == ResourceKind::image) {
+      if (!binding.image || !binding.image->view) {
+        leftOut |= uint64_t(1) << i;
+        continue;
+      }
+      images[i] = {VK_NULL_HANDLE, binding.image->view, VK_IMAGE_LAYOUT_GENERAL};
+      write.pImageInfo = &images[i];
+      write.pBufferInfo = nullptr;
+    } else if (resource.kind == ResourceKind::texture) {
+      if (!binding.texture.imageView) { // or textures come in pages
+        leftOut |= uint64_t(1) << i;
+        continue;
+      }
+      images[i] = binding.texture;
+      write.dstSet = textureSet;
+      write.dstBinding = i - firstTexture_;
+      write.pImageInfo = &images[i];
+      write.pBufferInfo = nullptr;
+    } else if (resource.kind == ResourceKind::scratch) {
+      if (scratch)
+        buffers[i] = {scratch, scratchOffset + passes_.scratchOffsets[i], std::max<VkDeviceSize>(resource.bytes, 4)};
+    } else if (resource.kind == ResourceKind::constants || resource.kind == ResourceKind::uniforms) {
+      buffers[i] = {constants_.handle(), slot * passes_.constantsBytes + passes_.scratchOffsets[i], resource.bytes};
+    } else if (resource.kind == ResourceKind::report) {
+      if (reports) buffers[i] = {reports_.handle(), slot * reportStride_, passes_.reportBytes};
+    } else if (binding.scratch != UINT32_MAX) {
+      if (scratch)
+        buffers[i] = {scratch, scratchOffset + passes_.scratchOffsets[binding.scratch],
+                      passes_.resources[binding.scratch].bytes};
+    } else if (!binding.hostData.empty()) {
+      buffers[i] = {constants_.handle(), slot * passes_.constantsBytes + passes_.scratchOffsets[i],
+                    binding.hostData.size()};
+    } else if (binding.ownBuffer) {
+      buffers[i] = {binding.ownBuffer, binding.ownOffset, binding.ownSize};
+    } else if (binding.engineBuffer && binding.engineBuffer->buffer) {
+      buffers[i] = {binding.engineBuffer->buffer, binding.engineBuffer->offset, binding.engineBuffer->size};
+    }
+    writes[count++] = write;
+  }
+  for (uint32_t group = first; group < first + groupCount; ++group) {
+    std::array<VkWriteDescriptorSet, kMaxResources> ofGroup;
+    std::array<VkCopyDescriptorSet, kMaxResources> emptied;
+    uint32_t written = 0, emptiedCount = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+      const bool isTexture = writes[i].dstSet != VK_NULL_HANDLE;
+      if (isTexture ? group != first : !(groups_[group].resources >> writes[i].dstBinding & 1)) continue;
+      ofGroup[written] = writes[i];
+      if (!isTexture) ofGroup[written].dstSet = setOf(slot, group);
+      ++written;
+    }
+    for (uint32_t i = 0; leftOut >> i; ++i) {
+      if (!(leftOut >> i & 1)) continue;
+      const bool isTexture = passes_.resources[i].kind == ResourceKind::texture;
+      if (isTexture ? group != first : !(groups_[group].resources >> i & 1)) continue;
+      const uint32_t binding = isTexture ? i - firstTexture_ : i;
+      emptied[emptiedCount++] = {VK_STRUCTURE_TYPE_COPY_DESCRIPTOR_SET,
+                                 nullptr,
+                                 isTexture ? textureSets_.back() : setOf(emptySlot_, group),
+                                 binding,
+                                 0,
+                                 isTexture ? textureSet : setOf(slot, group),
+                                 binding,
+                                 0,
+                                 1};
+    }
+    context.device.vk.UpdateDescriptorSets(context.device.device, written, ofGroup.data(), emptiedCount,
+                                           emptied.data());
+  }
+}
+
 } // namespace gpgp::core
