@@ -122,7 +122,6 @@ Result<void> Recorder::createLayouts() {
 
 Result<void> Recorder::createSets(uint32_t slotCount) {
   const Device& device = context.device;
-  emptySlot_ = slotCount;
   std::array<VkDescriptorPoolSize, 4> sizes{{{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
                                              {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
                                              {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},
@@ -175,6 +174,7 @@ void Recorder::writeDescriptors(uint32_t slot, uint32_t first, uint32_t groupCou
   // Images and textures without a view, by resource: passes that use them are skipped. But lavapipe looks at all
   // descriptors of a set when it is bound, and the images of an earlier recording may be gone.
   uint64_t leftOut = 0;
+  const auto empty = static_cast<uint32_t>(slots_.size()); // whose sets are never written
   const VkDescriptorSet textureSet = textureSets_.empty() ? VK_NULL_HANDLE : textureSets_[slot * passes_.texturePages];
   for (uint32_t i = 0; i < passes_.resources.size(); ++i) {
     const Resource& resource = passes_.resources[i];
@@ -241,7 +241,7 @@ void Recorder::writeDescriptors(uint32_t slot, uint32_t first, uint32_t groupCou
       const uint32_t binding = isTexture ? i - firstTexture_ : i;
       emptied[emptiedCount++] = {VK_STRUCTURE_TYPE_COPY_DESCRIPTOR_SET,
                                  nullptr,
-                                 isTexture ? textureSets_.back() : setOf(emptySlot_, group),
+                                 isTexture ? textureSets_.back() : setOf(empty, group),
                                  binding,
                                  0,
                                  isTexture ? textureSet : setOf(slot, group),

@@ -209,7 +209,6 @@ private:
   uint32_t firstTexture_ = 0, textureCount_ = 0; // textures lie in a row
   VkDescriptorPool pool_ = VK_NULL_HANDLE;
   std::pmr::vector<VkDescriptorSet> sets_, textureSets_; // sets_: by slot and group; the last are never written
-  uint32_t emptySlot_ = 0;                               // theirs in sets_
   std::pmr::vector<VkPipeline> pipelines_;               // by shader; filled by prewarm
   std::pmr::vector<float> pipelineTimes_;                // milliseconds that these took
   std::array<Target, kMaxTargets> targets_ = {};
